@@ -50,14 +50,14 @@ pub(super) fn check(
         Purpose::Stencil => has_stencil(format),
     };
     if !fits && purpose == Purpose::Ids {
-        return Err(format!("{what} want R32_UINT, and their format is {format:?}").into());
+        return Err(format!("{what} need R32_UINT, but the format is {format:?}").into());
     }
     if !fits || !device.format_features(format).contains(needed) {
         return Err(format!("{name} cannot draw {what} to {format:?}").into());
     }
     if samples.as_raw().count_ones() != 1 {
         return Err(format!(
-            "{what} has {} samples a pixel: give one number of them",
+            "{what} has {} samples per pixel: give one sample count",
             sample_counts(samples)
         )
         .into());
@@ -65,7 +65,7 @@ pub(super) fn check(
     let there = device.attachment_samples(format, usage);
     if !there.contains(samples) {
         return Err(format!(
-            "{what} has {} samples a pixel, and {name} draws to {format:?} with {}",
+            "{what} has {} samples per pixel, but {name} supports {format:?} with {}",
             sample_counts(samples),
             sample_counts(there)
         )

@@ -152,7 +152,9 @@ impl Buffers {
         let refuse = |what: String| Err(Error::Usage(format!("the host's surfels cannot be drawn: {what}")));
         let (capacity, count) = (self.capacity, self.count);
         if capacity == 0 || capacity >= u64::from(u32::MAX) || count > capacity {
-            return refuse(format!("{count} of {capacity}: give room for 1 to 2³² − 2, and at most as many"));
+            return refuse(format!(
+                "{count} of {capacity}: give a capacity from 1 to 2³² − 2, and a count of at most that"
+            ));
         }
         if !self.origin.is_finite() {
             return refuse(format!("their origin is {}: give a finite one", self.origin));
@@ -161,7 +163,7 @@ impl Buffers {
             let size = if self.two_sided { radius.abs() } else { radius };
             if !(size > 0.0 && size <= Surfels::LARGEST) {
                 return refuse(format!(
-                    "all have a radius of {radius}: give one above 0, up to {:e}",
+                    "the radius of all is {radius}: give one above 0, up to {:e}",
                     Surfels::LARGEST
                 ));
             }

@@ -68,19 +68,19 @@ pub(super) unsafe fn stream(
     let size = *size;
     if offset % 4 != 0 || stride % 4 != 0 || stride < size || stride > u64::from(u32::MAX) {
         let what = format_args!(
-            "they begin at byte {offset}, {stride} bytes apart: give multiples of 4, and a stride of {size} bytes or more, less than 2³²"
+            "the offset is {offset} bytes and the stride {stride}: give multiples of 4, and a stride from {size} bytes to less than 2³²"
         );
         return Err(refused(name, what));
     }
     let end = (capacity - 1).checked_mul(stride).and_then(|last| last.checked_add(offset)?.checked_add(size));
     if end.is_none_or(|end| end > room) {
         let what = format_args!(
-            "{capacity} of them, from byte {offset} on, {stride} bytes apart, do not fit {room} bytes: give a larger buffer or fewer"
+            "{capacity} values from byte {offset} on, with a stride of {stride} bytes, do not fit {room} bytes: give a larger buffer or fewer"
         );
         return Err(refused(name, what));
     }
     if buffer == vk::Buffer::null() {
-        return Err(refused(name, "their buffer is null: give one that is bound to memory"));
+        return Err(refused(name, "the buffer is null: give one that is bound to memory"));
     }
     // SAFETY: by the caller.
     let buffer = unsafe { Buffer::of_host(device, buffer, room) };

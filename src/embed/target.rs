@@ -54,8 +54,7 @@ pub struct Target {
 impl Target {
     /// Validates the target for `device`.
     pub(super) fn check(&self, device: &Device) -> Result<()> {
-        let refuse =
-            |cause: Cause| Err(Error::Usage(format!("the host's target cannot be drawn to: {cause}")));
+        let refuse = |cause: Cause| Err(Error::Usage(format!("the host's target is not supported: {cause}")));
         self.check_pass(device).or_else(refuse)?;
         self.check_locations(device).or_else(refuse)?;
         if self.encode && is_srgb(self.colours[self.picture as usize]) {
@@ -63,7 +62,7 @@ impl Target {
         }
         if self.colours.len() > 1 && !device.capabilities().independent_blend {
             return refuse(
-                "it has several colour attachments, and the device was lent without the feature independentBlend: enable it".into(),
+                "several colour attachments need the feature independentBlend, which the external device does not have: enable it".into(),
             );
         }
         self.check_depth(device).or_else(refuse)
@@ -73,7 +72,7 @@ impl Target {
         match self.pass {
             Pass::Subpass { pass, .. } if pass == vk::RenderPass::null() => Err("there is no render pass".into()),
             Pass::Rendering if !device.capabilities().dynamic_rendering => Err(
-                "dynamic rendering wants the feature dynamicRendering, without which the device was lent: enable it, and say so, or draw in a \
+                "dynamic rendering needs the feature dynamicRendering, which the external device does not have: enable it and set `dynamic_rendering`, or use a \
                  render pass"
                     .into(),
             ),
@@ -85,7 +84,7 @@ impl Target {
         let most = device.capabilities().max_colour_attachments;
         if self.colours.len() > most as usize {
             let (name, asked) = (&device.description().name, self.colours.len());
-            return Err(format!("{asked} colour attachments, and {name} draws to at most {most}").into());
+            return Err(format!("{asked} colour attachments, but {name} supports at most {most}").into());
         }
         let wanted = [
             ("the picture", Some(self.picture), Purpose::Blended),
@@ -103,7 +102,7 @@ impl Target {
             if location >= self.colours.len().min(MOST) {
                 let count = self.colours.len();
                 return Err(format!(
-                    "{what} want location {location} of {count} colour attachments; give one below {MOST} that there is"
+                    "the location of {what} is {location} of {count} colour attachments: give an existing one below {MOST}"
                 )
                 .into());
             }
@@ -135,7 +134,7 @@ impl Target {
         attachments::check(device, "the stencil", Purpose::Stencil, self.stencil, self.samples)?;
         match self.depth {
             Some(depth) if depth != self.stencil => Err(format!(
-                "depth is {depth:?} and the stencil {:?}: one attachment has both, so give one format",
+                "depth is {depth:?} and the stencil {:?}: both are one attachment, so give one format",
                 self.stencil
             )
             .into()),

@@ -47,7 +47,7 @@ impl View {
         if ends.iter().zip(most).any(|(end, most)| *end > most as f32) {
             let [widest, highest] = most;
             return Err(Error::Usage(format!(
-                "a viewport of {width}x{height} px at ({x}, {y}): no target of the device is larger than {widest}x{highest}"
+                "a viewport of {width}x{height} px at ({x}, {y}): the device supports targets of at most {widest}x{highest} px"
             )));
         }
         Ok(vk::Rect2D {

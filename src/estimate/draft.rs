@@ -41,13 +41,13 @@ impl Draft {
             )));
         }
         if u32::try_from(count).is_err() {
-            return Err(Error::Usage(format!("{count} points: at most 2³² − 1 are drawn")));
+            return Err(Error::Usage(format!("{count} points: give at most 2³² − 1")));
         }
         if let Some(triangle) =
             cloud.triangles.iter().find(|corners| corners.iter().any(|&i| i as usize >= count))
         {
             return Err(Error::Usage(format!(
-                "triangle {triangle:?} has a corner that is none of the {count} points"
+                "triangle {triangle:?} has a corner that is none of the {count} points: count from 0"
             )));
         }
         Ok(Self { surfels, triangles: cloud.triangles, estimated: Estimated::default() })
@@ -104,13 +104,13 @@ impl Draft {
     pub fn finish(self, how: &Estimate) -> Result<(Surfels, Estimated)> {
         let Self { mut surfels, mut estimated, .. } = self;
         if surfels.radii.contains(&0.0) {
-            let text = "its points are all at one place, so that they have no spacing: give a radius";
+            let text = "all points coincide, so they have no spacing: give a radius";
             return Err(Error::Usage(text.into()));
         }
         surfels.radii.iter_mut().for_each(|radius| *radius *= how.radius_scale);
         if let Some(radius) = surfels.radii.iter().find(|radius| !(radius.is_finite() && **radius > 0.0)) {
             return Err(Error::Usage(format!(
-                "a surfel would have the radius {radius}: give another radius or factor of it"
+                "a surfel would have the radius {radius}: give another radius or scale"
             )));
         }
         // Weights depend on the kernels and on the neighbours.

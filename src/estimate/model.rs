@@ -49,7 +49,7 @@ impl Cloud {
         let corners = self.ribbons.iter().chain(&self.tubes).flatten().chain(self.triangles.iter().flatten());
         match corners.copied().find(|&i| i as usize >= count) {
             Some(corner) => Err(Error::Usage(format!(
-                "a line or a triangle has the corner {corner}, which is none of the {count} points"
+                "a line or a triangle has the corner {corner}, which is none of the {count} points: count from 0"
             ))),
             None => Ok(()),
         }
@@ -126,9 +126,11 @@ impl Primitives {
 fn normals(cloud: &Cloud) -> Vec<Vec3> {
     let mut normals = cloud.normals.clone().unwrap_or_else(|| vec![Vec3::ZERO; cloud.len()]);
     if normals.contains(&Vec3::ZERO) {
-        let told = faces::normals(&cloud.positions, &cloud.triangles);
-        for (normal, told) in normals.iter_mut().zip(told).filter(|(normal, _)| **normal == Vec3::ZERO) {
-            *normal = told.unwrap_or(Vec3::Z);
+        let from_faces = faces::normals(&cloud.positions, &cloud.triangles);
+        for (normal, from_faces) in
+            normals.iter_mut().zip(from_faces).filter(|(normal, _)| **normal == Vec3::ZERO)
+        {
+            *normal = from_faces.unwrap_or(Vec3::Z);
         }
     }
     normals

@@ -113,6 +113,6 @@ mod tests {
             assert!(error.contains(cause), "{end}: {error}");
         }
         let on_target = with(r#","height":1"#).replace("0,0,3", "0,0,0");
-        assert!(parse(on_target.as_bytes()).unwrap_err().to_string().contains("stands on its target"));
+        assert!(parse(on_target.as_bytes()).unwrap_err().to_string().contains("is at its target"));
     }
 }

@@ -43,6 +43,9 @@ pub fn read_small(path: &Path) -> Result<Vec<u8>> {
     if bytes.len() as u64 <= SMALL {
         Ok(bytes)
     } else {
-        Err(Error::input(path.display().to_string(), "more than a mebibyte: give a smaller file"))
+        Err(Error::input(
+            path.display().to_string(),
+            "the file is larger than a mebibyte: give a smaller one",
+        ))
     }
 }

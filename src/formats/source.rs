@@ -86,7 +86,7 @@ impl<'a> Source<'a> {
             Self::File { file, .. } => std::os::unix::fs::FileExt::read_exact_at(file, to, start),
             _ => Err(ErrorKind::Unsupported.into()),
         };
-        done.map_err(|error| format!("cannot read {} bytes from byte {start} on: {error}", to.len()).into())
+        done.map_err(|error| format!("cannot read {} bytes at byte {start}: {error}", to.len()).into())
     }
 }
 

@@ -111,7 +111,7 @@ impl Camera {
         }
         if !is_rigid(&self.view) {
             return Err(Error::Usage(
-                "the view matrix scales or shears: give a rotation and a translation, and scale what is seen, or the projection".into(),
+                "the view matrix scales or shears: give a rotation and a translation, and scale the scene or the projection".into(),
             ));
         }
         if z.x != 0.0 || z.y != 0.0 {
@@ -172,7 +172,7 @@ fn look_at_view(eye: DVec3, target: DVec3, up: DVec3) -> Result<DMat4> {
     if !away.length_squared().is_finite() {
         return Err(usage("is too far from its target for float64"));
     }
-    let forward = away.try_normalize().ok_or_else(|| usage("stands on its target"))?;
+    let forward = away.try_normalize().ok_or_else(|| usage("is at its target"))?;
     let right = forward.cross(up).try_normalize().ok_or_else(|| usage("looks along its up vector"))?;
     let down = forward.cross(right);
     let rotation = glam::DMat3::from_cols(right, down, forward).transpose();

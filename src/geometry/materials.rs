@@ -39,7 +39,7 @@ impl Materials {
     pub(super) fn check(&self) -> Result<()> {
         let count = self.table.len();
         if count > Self::MOST {
-            let text = format!("{count} materials: at most {} are drawn", Self::MOST);
+            let text = format!("{count} materials: give at most {}", Self::MOST);
             return Err(Error::Usage(text));
         }
         let within = |value: f32| (0.0..=Surfels::LARGEST).contains(&value);
@@ -53,9 +53,9 @@ impl Materials {
         }
         match self.of.iter().find(|&&number| number != Self::NONE && usize::from(number) >= count) {
             None => Ok(()),
-            Some(number) => Err(Error::Usage(format!(
-                "a point has material {number}, and there are {count}: number them from 0"
-            ))),
+            Some(number) => {
+                Err(Error::Usage(format!("a point has material {number} of {count}: count from 0")))
+            }
         }
     }
 
@@ -102,8 +102,7 @@ impl Materials {
                 }
             };
             if table.len() > Self::MOST {
-                let text =
-                    format!("{} materials in one scene: at most {} are drawn", table.len(), Self::MOST);
+                let text = format!("{} materials in one scene: give at most {}", table.len(), Self::MOST);
                 return Err(Error::Usage(text));
             }
             // Fits: there are at most `MOST` materials.
@@ -151,14 +150,14 @@ mod tests {
     fn what_cannot_be_is_refused() {
         assert!(materials(&[0.1], &[0, Materials::NONE]).check().is_ok());
         let dull = Materials { table: [Material { specular: [0.0; 3], shininess: 0.0 }].into(), of: vec![] };
-        for (wrong, said) in [
-            (materials(&[0.1], &[1]), "material 1, and there are 1"),
+        for (wrong, expected) in [
+            (materials(&[0.1], &[1]), "material 1 of 1"),
             (materials(&[0.1, f32::NAN], &[]), "material 1 has a specular"),
             (materials(&[-0.1], &[]), "material 0 has a specular"),
             (dull, "exponent of 0"),
         ] {
             let text = wrong.check().unwrap_err().to_string();
-            assert!(text.contains(said), "{text}");
+            assert!(text.contains(expected), "{text}");
         }
     }
 }

@@ -116,7 +116,7 @@ impl Cloud {
     pub fn merge(mut parts: Vec<Self>, albedo: [f32; 3]) -> Result<Self> {
         let count: usize = parts.iter().map(Self::len).sum();
         if u32::try_from(count).is_err() {
-            return Err(Error::Usage(format!("{count} points in one scene: at most 2³² − 1 are drawn")));
+            return Err(Error::Usage(format!("{count} points in one scene: give at most 2³² − 1")));
         }
         if parts.len() == 1 {
             return Ok(parts.remove(0));

@@ -84,7 +84,7 @@ impl Parts<'_> {
             Ok(())
         } else {
             Err(Error::Usage(format!(
-                "the surfels' origin is {a}, that of lines and triangles {b}: give one"
+                "the surfels' origin is {a}, that of lines and triangles {b}: give the same"
             )))
         }
     }
@@ -217,14 +217,14 @@ impl Primitives {
             ("materials", materials),
         ];
         if let Some((what, length)) = lengths.iter().find(|(_, length)| *length != count) {
-            return Err(Error::Usage(format!("{count} vertices and {length} {what}: give one a vertex")));
+            return Err(Error::Usage(format!("{count} vertices and {length} {what}: give one per vertex")));
         }
         self.materials.as_ref().map_or(Ok(()), Materials::check)?;
         let ends = self.segments().flat_map(|(ends, _)| ends);
         match ends.chain(self.triangles.iter().copied().flatten()).find(|&vertex| vertex as usize >= count) {
             None => Ok(()),
             Some(vertex) => Err(Error::Usage(format!(
-                "a line or a triangle has vertex {vertex}, and there are {count}: number them from 0"
+                "a line or a triangle has vertex {vertex} of {count}: count from 0"
             ))),
         }
     }
@@ -289,13 +289,12 @@ mod tests {
             |p| p.colours = Some(Colours::Linear(vec![])),
             |p| p.origin.x = f64::NAN,
         ];
-        let causes =
-            ["vertex 2, and there are 2", "vertex 9", "2 vertices and 1 radii", "and 0 colours", "finite"];
-        for (change, said) in changes.into_iter().zip(causes) {
+        let causes = ["vertex 2 of 2", "vertex 9", "2 vertices and 1 radii", "and 0 colours", "finite"];
+        for (change, expected) in changes.into_iter().zip(causes) {
             let mut primitives = two();
             change(&mut primitives);
             let text = primitives.check().unwrap_err().to_string();
-            assert!(text.contains(said), "{text}");
+            assert!(text.contains(expected), "{text}");
         }
     }
 

@@ -93,7 +93,9 @@ impl Surfels {
             ("materials", self.materials.as_ref().map_or(count, |materials| materials.of.len())),
         ];
         if let Some((what, length)) = lengths.iter().find(|(_, length)| *length != count) {
-            return Err(Error::Usage(format!("{count} positions and {length} {what}: give one a position")));
+            return Err(Error::Usage(format!(
+                "{count} positions and {length} {what}: give one per position"
+            )));
         }
         self.clips.as_ref().map_or(Ok(()), Clips::check)?;
         self.materials.as_ref().map_or(Ok(()), Materials::check)?;

@@ -99,7 +99,7 @@ impl MipMap {
         let (size, pixels) = (picture.size, picture.colour.len());
         if pixels == 0 || pixels as u64 != u64::from(size[0]) * u64::from(size[1]) {
             return Err(Error::Usage(format!(
-                "a texture of {pixels} pixels and {}×{} px: give as many as it has, at least one",
+                "{pixels} pixels for a texture of {}×{} px: give that many, at least one",
                 size[0], size[1]
             )));
         }

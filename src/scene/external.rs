@@ -41,8 +41,7 @@ impl Scene {
             least.min(external.capacity).saturating_mul(stride) + capabilities.storage_buffer_alignment;
         if reach > range {
             return Err(Error::Usage(format!(
-                "the host's surfels cannot be drawn: {least} of them, {stride} bytes apart, go beyond the {range} bytes that a shader of {} \
-                 can see of a buffer (maxStorageBufferRange): lay them closer together",
+                "the host's surfels cannot be drawn: {least} of them with a stride of {stride} bytes exceed the {range} bytes of maxStorageBufferRange of {}: reduce the stride",
                 device.description().name
             )));
         }

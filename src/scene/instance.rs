@@ -61,8 +61,7 @@ impl Instance {
 
 fn refusal(number: usize, cause: &Cause) -> Error {
     Error::Usage(format!(
-        "the transform of instance {number} {cause}: place scenes by a rotation, a uniform scale above 0 and a translation, and give what \
-         else is wanted to the surfels themselves before they are uploaded"
+        "the transform of instance {number} {cause}: give a rotation, a uniform scale above 0 and a translation, and apply any other transform to the surfels before their upload"
     ))
 }
 
@@ -122,7 +121,7 @@ fn check_ids(placed: &[Placed<'_>]) -> Result<()> {
         Ok(())
     } else {
         Err(Error::Usage(format!(
-            "the {} scenes of a frame have room for {sum} surfels, segments and triangles, and {most} have numbers: show fewer of them at once",
+            "the {} scenes of a frame have room for {sum} surfels, segments and triangles, but there are {most} ids: show fewer at once",
             placed.len()
         )))
     }

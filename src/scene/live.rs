@@ -33,12 +33,12 @@ impl Scene {
     pub fn set_count(&self, count: u64) -> Result<()> {
         let capacity = self.capacity();
         if count > capacity {
-            let text = format!("{count} surfels of a scene with room for {capacity}: give at most as many");
+            let text = format!("{count} surfels of a scene with room for {capacity}: give at most that");
             return Err(Error::Usage(text));
         }
         if self.clips.is_some() && count != self.count() {
             let text = format!(
-                "a scene with clip lines has all of its {capacity} surfels: upload fewer, or leave out the clip lines"
+                "a scene with clip lines always has its {capacity} surfels: upload fewer, or leave out the clip lines"
             );
             return Err(Error::Usage(text));
         }

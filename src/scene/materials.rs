@@ -20,7 +20,7 @@ impl MaterialStream {
         let (size, range) = (4 * words as u64, device.capabilities().max_storage_buffer_range);
         if size > range {
             return Err(Error::Usage(format!(
-                "the materials of {} points take {size} bytes, and {} has buffers of {range}: give fewer points, or none of them a material",
+                "the materials of {} points take {size} bytes, but {} supports buffers of {range}: give fewer points, or no materials",
                 of.len(),
                 device.description().name
             )));

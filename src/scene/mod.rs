@@ -183,9 +183,7 @@ impl Scene {
         if self.is_on(device) {
             Ok(())
         } else {
-            Err(Error::Usage(
-                "the scene is of another device: upload it to the one that this renderer is of".into(),
-            ))
+            Err(Error::Usage("the scene is of another device: upload it to the renderer's".into()))
         }
     }
 
@@ -326,7 +324,7 @@ fn usable(parts: &Parts<'_>) -> Result<(Bounds, usize)> {
         let surfels = parts.surfels.len();
         let primitives = parts.primitives.map_or(0, Primitives::count);
         let text = format!(
-            "a scene with nothing to draw: none of {surfels} surfels, and of {primitives} segments and triangles, is valid"
+            "the scene is empty: none of {surfels} surfels and {primitives} segments and triangles is valid"
         );
         return Err(Error::Usage(text));
     };
@@ -337,7 +335,7 @@ fn warn_of_primitives(invalid: usize, count: usize) {
     if invalid > 0 {
         log::warn!(
             "{invalid} of {count} segments and triangles are invalid and will not be drawn: a value of a vertex is NaN, infinite or \
-             beyond {:e}, a direction is no unit vector, or a radius is below 0",
+             beyond {:e}, a direction is not a unit vector, or a radius is below 0",
             Surfels::LARGEST
         );
     }
@@ -345,8 +343,7 @@ fn warn_of_primitives(invalid: usize, count: usize) {
 
 fn warn_of(invalid: usize, count: usize) {
     log::warn!(
-        "{invalid} of {count} surfels are invalid and will not be drawn: a value is NaN, infinite or beyond {:e}, a normal or an axis \
-         is no unit vector, a radius or an aspect is not above 0, a clip line is not in the tangent plane",
+        "{invalid} of {count} surfels are invalid and will not be drawn: a value is NaN, infinite or beyond {:e}, a normal or an axis is not a unit vector, a radius or an aspect is not above 0, a clip line is not in the tangent plane",
         Surfels::LARGEST
     );
 }

@@ -96,7 +96,7 @@ fn check_sizes(device: &Device, primitives: &Primitives, surfels: usize) -> Resu
     let numbers = surfels as u64 + primitives.count() as u64;
     if primitives.len() as u64 >= u64::from(TUBE) || numbers >= u64::from(u32::MAX) {
         return Err(Error::Usage(format!(
-            "{} vertices of lines and triangles, and {numbers} of these and surfels: give fewer than 2³¹ and 2³² − 1",
+            "{} vertices of lines and triangles, and {numbers} elements with the surfels: give fewer than 2³¹ and 2³² − 1",
             primitives.len()
         )));
     }
@@ -109,7 +109,7 @@ fn check_sizes(device: &Device, primitives: &Primitives, surfels: usize) -> Resu
         Ok(())
     } else {
         Err(Error::Usage(format!(
-            "lines and triangles take {largest} bytes a stream and {most} invocations; {} has buffers of {range} and {groups}: give fewer",
+            "lines and triangles take {largest} bytes per stream and {most} invocations, but {} supports buffers of {range} and {groups}: give fewer",
             device.description().name
         )))
     }

@@ -167,7 +167,7 @@ mod tests {
         projective.z_axis.w = 0.1;
         let mut nan = turned();
         nan.w_axis.x = f64::NAN;
-        for (matrix, said) in [
+        for (matrix, expected) in [
             (nan, "not finite"),
             (scaled(1.0, f64::INFINITY, 1.0), "not finite"),
             (projective, "last row"),
@@ -181,7 +181,7 @@ mod tests {
             (scaled(1e20, 1e20, 1e20), "scales by 1e20"),
         ] {
             let text = Similarity::of(&matrix).unwrap_err().to_string();
-            assert!(text.contains(said), "`{said}` is not in `{text}`");
+            assert!(text.contains(expected), "`{expected}` is not in `{text}`");
         }
     }
 }

@@ -20,7 +20,7 @@ impl TextureStream {
         let (size, range) = (12 + bytes.len() as u64, device.capabilities().max_storage_buffer_range);
         if size > range {
             return Err(Error::Usage(format!(
-                "a texture of {width}x{height} px takes {size} bytes, and {} has buffers of {range}: give a smaller one",
+                "a texture of {width}x{height} px takes {size} bytes, but {} supports buffers of {range}: give a smaller one",
                 device.description().name
             )));
         }

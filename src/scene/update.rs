@@ -86,27 +86,24 @@ impl Scene {
         let turned = changes.normals.is_some() || changes.ellipses.is_some();
         let marks = self.clips.is_some() || self.weights.is_some() || self.texture.is_some();
         if self.of_host {
-            return refuse("they are in buffers of the host, who writes them itself");
+            return refuse("they are in buffers of the host: write them there");
         } else if range.end > self.capacity() {
             return refuse(&format!("the scene has room for {}", self.capacity()));
         } else if changes.ellipses.is_some() && self.ellipses.is_none() {
             return refuse("the scene has circles: upload it with ellipses");
         } else if changes.two_sided.is_some() && (!self.two_sided || changes.radii.is_none()) {
-            return refuse(
-                "sides are given along with radii, in a scene that was uploaded with some that have none",
-            );
+            return refuse("two_sided needs radii, and a scene that was uploaded with two-sided surfels");
         } else if self.two_sided && changes.radii.is_some() && changes.two_sided.is_none() {
-            return refuse("in a scene of which some surfels have no side, give two_sided along with radii");
+            return refuse("the scene has two-sided surfels: give two_sided along with radii");
         } else if kind.is_some_and(|kind| kind != self.colour_stream) {
-            return refuse(&format!("the scene holds colours as {:?}: give such", self.colour_stream));
+            return refuse(&format!("the scene has colours of format {:?}: give these", self.colour_stream));
         } else if changes.normals.is_some() && self.clips.is_some() {
-            return refuse("clip lines lie in the planes of the normals: upload surfels and clip lines anew");
+            return refuse("clip lines depend on the normals: upload surfels and clip lines anew");
         } else if turned && corners {
-            return refuse("weights at corners lie along the discs' axes: upload surfels and weights anew");
+            return refuse("corner weights depend on the discs' axes: upload surfels and weights anew");
         } else if changes.radii.is_some() && self.had_invalid && marks {
             return refuse(
-                "some were invalid when they were uploaded, and a radius would have them drawn with clip lines, weights or texture \
-                 coordinates that may be invalid: upload Surfels::valid",
+                "some were invalid at the upload, and a new radius would draw them with clip lines, weights or texture coordinates that may be invalid: upload Surfels::valid",
             );
         }
         Ok(())
@@ -148,7 +145,7 @@ impl Changes<'_> {
             Ok(first as u64)
         } else {
             Err(Error::Usage(format!(
-                "new positions, normals, radii, sides, ellipses, colours of unequal numbers {lengths:?}: give one a surfel"
+                "arrays of positions, normals, radii, two_sided, ellipses, colours have unequal lengths {lengths:?}: give one entry per surfel"
             )))
         }
     }

@@ -87,7 +87,7 @@ impl Settings {
     pub fn check_primitives(&self, there: bool) -> Result<()> {
         if there && self.pull_push.is_none() {
             Err(Error::Usage(
-                "lines and triangles are drawn by pull-push and pull-push-paper alone: choose one of them, or leave them out".into(),
+                "only pull-push and pull-push-paper draw lines and triangles: choose one of these methods, or leave them out".into(),
             ))
         } else {
             Ok(())
@@ -98,8 +98,7 @@ impl Settings {
     pub fn check_outputs(&self, outputs: Outputs) -> Result<()> {
         if outputs.id && self.pull_push.is_none() {
             Err(Error::Usage(
-                "numbers of points are those of pull-push and pull-push-paper alone, as splats are summed: choose one of them, or \
-                 leave the numbers out"
+                "only pull-push and pull-push-paper have point ids, as splats are summed: choose one of these methods, or leave the ids out"
                     .into(),
             ))
         } else {
@@ -111,7 +110,7 @@ impl Settings {
     pub fn check(&self) -> Result<()> {
         if self.pull_push.is_some() && self.splatting != Splatting::default() {
             return Err(Error::Usage(
-                "pull-push makes no splats: it has no footprint, kernel, filter, visibility, normalization or shade to choose".into(),
+                "pull-push has no splats: leave out footprint, kernel, filter, visibility, normalization and shade".into(),
             ));
         }
         self.splatting.check()?;
@@ -299,7 +298,7 @@ impl Lighting {
         let lights = self.directional.len();
         if lights > Self::MAX_DIRECTIONAL {
             let most = Self::MAX_DIRECTIONAL;
-            return Err(Error::Usage(format!("{lights} directional lights: at most {most} are drawn")));
+            return Err(Error::Usage(format!("{lights} directional lights: give at most {most}")));
         }
         let factors = [self.ambient, self.headlight, self.specular, self.shininess];
         let directions = self.directional.iter().flat_map(|light| [light.to_light, light.radiance]).flatten();

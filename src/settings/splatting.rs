@@ -225,7 +225,7 @@ impl Splatting {
                 "a Confetti kernel has no closed form under a low-pass filter (pajarola2004 §8): choose the filter none",
             ),
             _ if !blends && normalization != Normalization::None => refuse(
-                "a pixel that sees the nearest splat alone has nothing to normalize: choose the normalization none",
+                "with the nearest splat only there is nothing to normalize: choose the normalization none",
             ),
             _ => Ok(()),
         }

@@ -71,7 +71,7 @@ struct Opened {
     instance: Arc<Instance>,
 }
 
-/// A device that a host lends: its own, to go on using while the engine does.
+/// Description of an external device: the host keeps using it beside the engine.
 pub struct ExternalDevice<'a> {
     /// The instance, of at least Vulkan 1.1.
     pub instance: &'a ash::Instance,

@@ -97,7 +97,7 @@ fn require_validation_layer(entry: &ash::Entry) -> Result<&'static CStr> {
         Ok(VALIDATION_LAYER)
     } else {
         Err(Error::NoDevice(
-            "validation was asked for, but VK_LAYER_KHRONOS_validation is not installed (Debian: vulkan-validationlayers)".into(),
+            "validation is requested, but VK_LAYER_KHRONOS_validation is not installed (Debian: vulkan-validationlayers)".into(),
         ))
     }
 }

@@ -99,7 +99,7 @@ impl Presented {
     /// Returns an error if the recorded commands use a destroyed resource.
     pub(super) fn check(&self) -> Result<()> {
         if self.stakes.borrow().iter().any(|stake| stake.gone.load(Ordering::Relaxed)) {
-            Err(Error::Usage("what draws in a frame is dropped while that is recorded: keep it".into()))
+            Err(Error::Usage("an object that draws in a frame was dropped while the frame was recorded: keep it until the frame is presented".into()))
         } else {
             Ok(())
         }
@@ -171,7 +171,7 @@ impl Presenter {
     pub fn new(device: &Arc<Device>, surface: Surface) -> Result<Self> {
         if !surface.is_of(device) {
             let message =
-                "the surface is another device's: take that which Device::open_for returns beside it";
+                "the surface is of another device: use the one that Device::open_for returned with it";
             return Err(Error::Usage(message.into()));
         }
         let physical = device.physical();

@@ -41,25 +41,25 @@ pub const ABILITIES: [Ability; 4] = [
     Ability {
         extension: Some(ash::ext::shader_atomic_float::NAME),
         features: "shaderBufferFloat32AtomicAdd",
-        buys: "blended splats by compute shaders, which is faster on devices that are the CPU",
+        buys: "blended splats by compute shaders, which is faster on CPU devices",
         of: |abilities| abilities.float_atomics,
     },
     Ability {
         extension: Some(ash::khr::shader_atomic_int64::NAME),
         features: "shaderInt64, shaderBufferInt64Atomics",
-        buys: "lines and triangles by pull-push; points by it, and splats that are seen alone, by compute shaders",
+        buys: "lines and triangles by pull-push; points by pull-push, and unblended splats, by compute shaders",
         of: |abilities| abilities.int64_atomics,
     },
     Ability {
         extension: None,
         features: "fragmentStoresAndAtomics",
-        buys: "coverage as α where splats are drawn",
+        buys: "coverage as α with the raster path",
         of: |abilities| abilities.fragment_writes,
     },
     Ability {
         extension: None,
         features: "independentBlend",
-        buys: "hosts whose subpass has several colour attachments",
+        buys: "subpasses of a host with several colour attachments",
         of: |abilities| abilities.independent_blend,
     },
 ];

@@ -32,7 +32,7 @@ pub(super) fn instance_extensions(window: &dyn Window) -> Result<&'static [*cons
 }
 
 fn no_window(cause: impl std::fmt::Display) -> Error {
-    Error::NoWindow(format!("it cannot be presented to: {cause}"))
+    Error::NoWindow(format!("presentation is not possible: {cause}"))
 }
 
 impl Surface {

@@ -51,7 +51,7 @@ pub struct Pieces {
 
 /// Source buffers of recorded copies. Keep it until the GPU has executed the copies.
 #[derive(Default)]
-#[must_use = "the copies are made from it once they are submitted: keep it until then"]
+#[must_use = "the recorded copies read it: keep it until the GPU has executed them"]
 pub struct Staging(Vec<Buffer>);
 
 impl Staging {
@@ -107,7 +107,7 @@ impl<'a> Uploads<'a> {
                 Ok(())
             }
             Way::Kept(list) => {
-                assert_eq!(at, 0, "what is kept is of whole buffers");
+                assert_eq!(at, 0, "kept copies are of whole buffers");
                 let (written, read) = (buffer.with(Access::COPY_WRITE), buffer.with(Access::SHADER_READ));
                 list.push_back(Kept { bytes: bytes.to_vec(), at: 0, to: buffer.raw, written, read });
                 Ok(())

@@ -130,7 +130,7 @@ fn camera_files_are_checked() {
         (good.replace("up", "upp"), "unknown field `upp`"),
         (good.replace("45", "\"wide\""), "expected f64"),
         (good.replace("45", "180"), "the field of view is 180°"),
-        (good.replace("[0,0,3]", "[0,0,0]"), "stands on its target"),
+        (good.replace("[0,0,3]", "[0,0,0]"), "is at its target"),
         (good.replace("[0,0,3]", "[0,3]"), "length"),
         (good.replace(r#","fov_y_deg":45"#, ""), "either `fov_y_deg`"),
         (good.replace("}", r#","height":2}"#), "either `fov_y_deg`"),

@@ -163,7 +163,7 @@ fn numbers_are_the_engines_own() {
         }
         // Sums have no point ids.
         let refused = draw(&host, &frame, &mut renderer, &scene, &view, &Settings::default());
-        assert!(refused.is_err_and(|error| error.to_string().contains("pull-push-paper alone")));
+        assert!(refused.is_err_and(|error| error.to_string().contains("pull-push-paper have point ids")));
         drop(renderer);
         frame.destroy(&host);
     }
@@ -370,7 +370,7 @@ fn what_cannot_be_served_is_refused_and_says_why() {
     let target = fixture.frame.target();
     type Change = fn(&mut embed::Target);
     let changes: [(Change, &str); 17] = [
-        (|t| t.picture = 1, "location 1 of 1 colour attachments"),
+        (|t| t.picture = 1, "location of the picture is 1 of 1 colour attachments"),
         (|t| t.normal = Some(0), "both the picture and normals"),
         (|t| t.id = Some(0), "both the picture and point ids"),
         (
@@ -379,7 +379,7 @@ fn what_cannot_be_served_is_refused_and_says_why() {
         ),
         (
             |t| (t.colours, t.id) = (vec![FLOATS; 2], Some(1)),
-            "point ids at location 1 want R32_UINT, and their format is R32G32B32A32_SFLOAT",
+            "point ids at location 1 need R32_UINT, but the format is R32G32B32A32_SFLOAT",
         ),
         (
             |t| t.colours[0] = vk::Format::R32G32B32A32_UINT,
@@ -389,11 +389,11 @@ fn what_cannot_be_served_is_refused_and_says_why() {
         (|t| t.depth = Some(FLOATS), "cannot draw depth to R32G32B32A32_SFLOAT"),
         (|t| t.depth = Some(vk::Format::S8_UINT), "cannot draw depth to S8_UINT"),
         (|t| t.stencil = FLOATS, "cannot draw the stencil to R32G32B32A32_SFLOAT"),
-        (|t| t.stencil = vk::Format::D32_SFLOAT_S8_UINT, "one attachment has both"),
-        (|t| t.samples = ONE | FOUR, "1, 4 samples a pixel"),
-        (|t| t.samples = vk::SampleCountFlags::empty(), "no samples a pixel"),
-        (|t| t.samples = vk::SampleCountFlags::TYPE_64, "has 64 samples a pixel, and"),
-        (|t| t.colours = vec![FLOATS; 9], "9 colour attachments, and"),
+        (|t| t.stencil = vk::Format::D32_SFLOAT_S8_UINT, "both are one attachment"),
+        (|t| t.samples = ONE | FOUR, "1, 4 samples per pixel"),
+        (|t| t.samples = vk::SampleCountFlags::empty(), "no samples per pixel"),
+        (|t| t.samples = vk::SampleCountFlags::TYPE_64, "has 64 samples per pixel, but"),
+        (|t| t.colours = vec![FLOATS; 9], "9 colour attachments, but"),
         (|t| t.pass = embed::Pass::Subpass { pass: vk::RenderPass::null(), subpass: 0 }, "no render pass"),
         (|t| (t.colours[0], t.encode) = (vk::Format::R8G8B8A8_SRGB, true), "encodes sRGB itself"),
     ];
@@ -436,7 +436,7 @@ fn what_cannot_be_served_is_refused_and_says_why() {
         (&scene, bad(|view| view.viewport.width = 0.0), "0x120"),
         (&scene, bad(|view| view.viewport.x = 0.5), "whole pixels"),
         (&scene, bad(|view| view.viewport.height = f32::NAN), "whole pixels"),
-        (&scene, bad(|view| view.viewport.x = 60_000.0), "no target of the device is larger"),
+        (&scene, bad(|view| view.viewport.x = 60_000.0), "the device supports targets of at most"),
         (&scene, bad(|view| view.viewport.max_depth = f32::NAN), "from 0 to 1"),
         (&scene, bad(|view| (view.viewport.min_depth, view.viewport.max_depth) = (-1.0, 2.0)), "from 0 to 1"),
         (&scene, bad(|view| view.camera = rising()), "rises with distance, the target's falls"),

@@ -69,7 +69,7 @@ fn without_memory_there_is_an_error_and_then_there_is_memory() {
     assert_silent(&host);
 }
 
-/// Asserts that `made` is an error with the text `said`.
+/// Asserts that `made` is an error with the text `expected`.
 fn assert_refused<T>(made: surfel::Result<T>, expected: &str) {
     let text = made.err().map(|error| error.to_string()).unwrap_or_default();
     assert!(text.contains(expected), "`{expected}` is not in `{text}`");
@@ -94,10 +94,10 @@ fn render_passes_that_cannot_be_served_are_refused_and_say_why() {
     };
     type Change = fn(&mut HostRenderPass<'_>);
     let changes: [(Change, &str); 8] = [
-        (|pass| pass.subpasses = [0, 1], "nothing has been drawn to"),
+        (|pass| pass.subpasses = [0, 1], "a seed needs depth that is loaded or drawn"),
         (|pass| pass.subpasses = [u32::MAX, 1], "4294967295 subpasses before"),
-        (|pass| pass.picture = 7, "the picture wants attachment 7 of 3"),
-        (|pass| pass.normal = Some(0), "attachment 0 is given twice, for normals, too"),
+        (|pass| pass.picture = 7, "the picture has attachment index 7, but there are 3"),
+        (|pass| pass.normal = Some(0), "attachment 0 is given twice, also for normals"),
         (|pass| pass.picture = 1, "cannot draw the picture in attachment 1 to D32_SFLOAT"),
         (|pass| pass.depth.as_mut().unwrap().attachment = 0, "attachment 0 is given twice"),
         (|pass| (pass.picture, pass.resolve) = (2, None), "depth has TYPE_4 samples in attachment 1"),
@@ -128,7 +128,7 @@ fn render_passes_that_cannot_be_served_are_refused_and_say_why() {
                 .filter(|one| one.samples == FOUR)
                 .for_each(|one| one.samples = vk::SampleCountFlags::TYPE_64);
         }),
-        "has 64 samples a pixel, and",
+        "has 64 samples per pixel, but",
     );
     assert_refused(
         many(|all| all[1].format = vk::Format::S8_UINT),
@@ -138,9 +138,9 @@ fn render_passes_that_cannot_be_served_are_refused_and_say_why() {
     assert_refused(plan(&encoded, |pass| pass.encode = true, &[&settings]), "encodes sRGB itself");
     assert_refused(plan(&encoded, |pass| pass.normal = Some(3), &[&settings]), "independentBlend");
     let same: fn(&mut HostRenderPass<'_>) = |_| ();
-    assert_refused(plan(&attachments, same, &[&pulled]), "within a render pass");
+    assert_refused(plan(&attachments, same, &[&pulled]), "inside a render pass");
     assert_refused(plan(&attachments, same, &[&settings, &nearest]), "make a plan for each");
-    assert_refused(plan(&attachments, same, &[]), "a plan of no frames");
+    assert_refused(plan(&attachments, same, &[]), "the plan has no frames");
     let good = plan(&attachments, same, &[&settings]).unwrap();
     // SAFETY: nothing is created for a rejected description.
     let made = |frames| unsafe { Renderer::new(&device, good.clone(), vk::RenderPass::null(), frames) };
@@ -169,8 +169,8 @@ fn frames_that_cannot_be_served_are_refused_and_say_why() {
     assert_refused(unsafe { drawn.native.renderer.draw(vk::CommandBuffer::null()) }, "no frame to draw");
     for (scene, view, settings, expected) in [
         (&elsewhere, good, &settings, "of another device"),
-        (&painted, good, &settings, "planned without"),
-        (&scene, good, &method("sprites-unfiltered"), "a subpass for the nearest splat alone"),
+        (&painted, good, &settings, "which the plan does not include"),
+        (&scene, good, &method("sprites-unfiltered"), "a subpass for the nearest splat only"),
         (&scene, good, &method("pull-push"), "pull-push"),
         (&scene, bad(|view| view.viewport.width = 0.0), &settings, "0x120"),
         (&scene, bad(|view| view.viewport.x = 1.0), &settings, "the attachments have 160x120 px"),
@@ -187,7 +187,7 @@ fn frames_that_cannot_be_served_are_refused_and_say_why() {
     // SAFETY: nothing is created.
     unsafe {
         assert_refused(drawn.native.renderer.resize([0, 4], None), "0x4");
-        assert_refused(drawn.native.renderer.resize(SIZE, None), "there is no view of it");
+        assert_refused(drawn.native.renderer.resize(SIZE, None), "a seed needs a view");
     }
     // Rejected frames leave the state unchanged.
     drawn.render(&good, &settings, None, false);

@@ -86,7 +86,7 @@ fn a_report_is_of_the_frame_that_must_be_over_by_now() {
     let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
     let mut fixture = Fixture::new(&host, kind, SIZE, None, &surfels());
     fixture.renderer.measure(Measured { times: false, counts: true });
-    let told: Vec<_> = (0..5)
+    let reported: Vec<_> = (0..5)
         .map(|number| {
             let view = View::whole(nearer(number), SIZE);
             fixture.render(&host, &view, &settings, None);
@@ -94,7 +94,7 @@ fn a_report_is_of_the_frame_that_must_be_over_by_now() {
         })
         .collect();
     // Two frames may be in flight: when the third is recorded, the first is over.
-    assert_eq!(told, [None, None, Some(own[0]), Some(own[1]), Some(own[2])]);
+    assert_eq!(reported, [None, None, Some(own[0]), Some(own[1]), Some(own[2])]);
     fixture.destroy(&host);
     assert_silent(&host);
 }

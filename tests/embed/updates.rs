@@ -191,7 +191,7 @@ fn updates_that_cannot_be_made_are_refused_and_change_nothing() {
     refused(clipped.update(0, &Changes { normals: Some(&up), ..none }), "clip lines");
     refused(clipped.set_count(3), "clip lines");
     let weighted = scene(|s| s.weights = Some(Weights::collect(vec![(1.0, Some([1.0; 4])); 500])));
-    refused(weighted.update(0, &Changes { normals: Some(&up), ..none }), "weights at corners");
+    refused(weighted.update(0, &Changes { normals: Some(&up), ..none }), "corner weights");
     let spoiled = scene(|s| {
         s.weights = Some(Weights::collect(vec![(1.0, None); 500]));
         s.radii[3] = f32::NAN;

@@ -396,5 +396,5 @@ fn what_cannot_be_is_refused() {
     }
     let affine = |settings: &mut Settings| settings.splatting.footprint = Footprint::Affine;
     let text = refused(DeviceLimits::default(), open, affine).unwrap();
-    assert!(text.contains("pull-push makes no splats"), "{text}");
+    assert!(text.contains("pull-push has no splats"), "{text}");
 }

@@ -67,10 +67,10 @@ impl Demo for Subpasses {
     fn record(&mut self, host: &Host, cmd: vk::CommandBuffer, seconds: f64) -> Result<()> {
         let view = View::whole(sphere::camera(seconds, self.size)?, self.size);
         let scene = self.models.scene(cmd)?;
-        let stands = Instance::new(&scene, self.models.to_unit(&scene.bounds()));
+        let instance = Instance::new(&scene, self.models.to_unit(&scene.bounds()));
         // SAFETY: prepared outside the pass and drawn inside it; the callers submit frames in order, with the declared number in flight.
         unsafe {
-            self.native.renderer.prepare(cmd, &stands, &view, &self.settings)?;
+            self.native.renderer.prepare(cmd, &instance, &view, &self.settings)?;
             let lit = (&self.mesh, TO_LIGHT);
             self.native.record(host, cmd, (Some(lit), &view), |surfels| surfels.draw(cmd), true)
         }

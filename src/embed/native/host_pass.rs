@@ -50,7 +50,7 @@ impl HostRenderPass<'_> {
         if self.subpasses.iter().any(|count| *count > MOST_SUBPASSES) {
             let [before, after] = self.subpasses;
             return refuse(format!(
-                "{before} subpasses before and {after} after: at most {MOST_SUBPASSES} are known"
+                "{before} subpasses before and {after} after: at most {MOST_SUBPASSES} are supported"
             ));
         }
         let depth = self.depth.map(|depth| depth.attachment);
@@ -63,7 +63,7 @@ impl HostRenderPass<'_> {
         for (i, (what, attachment, purpose)) in wanted.into_iter().enumerate() {
             let Some(attachment) = attachment else { continue };
             if wanted[..i].iter().any(|(_, other, _)| *other == Some(attachment)) {
-                return refuse(format!("attachment {attachment} is given twice, for {what}, too"));
+                return refuse(format!("attachment {attachment} is given twice, also for {what}"));
             }
             self.check_attachment(device, what, attachment, purpose)?;
         }
@@ -72,7 +72,7 @@ impl HostRenderPass<'_> {
         }
         if self.normal.is_some() && !device.capabilities().independent_blend {
             return refuse(
-                "normals beside a picture want the feature independentBlend, without which the device was lent: enable it",
+                "normals beside a picture need the feature independentBlend, which the external device does not have: enable it",
             );
         }
         if let Some(depth) = self.depth.filter(|depth| depth.seed)
@@ -80,14 +80,14 @@ impl HostRenderPass<'_> {
             && self.attachments[depth.attachment as usize].load_op != vk::AttachmentLoadOp::LOAD
         {
             return refuse(
-                "splats are to start from a depth that nothing has been drawn to: leave `seed` out",
+                "a seed needs depth that is loaded or drawn in a subpass before: leave `seed` out",
             );
         }
         let layout = vk::Format::D32_SFLOAT_S8_UINT;
         let marks = device.format_features(layout).contains(vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT);
         if self.depth.is_some_and(|depth| depth.seed) && !marks {
             return refuse(format!(
-                "{} has no depth attachments of {layout:?}, in which what is seeded is told apart: leave `seed` out",
+                "{} does not support the depth format {layout:?}, whose stencil a seed needs: leave `seed` out",
                 device.description().name
             ));
         }
@@ -98,7 +98,7 @@ impl HostRenderPass<'_> {
         let Some(description) = self.attachments.get(attachment as usize) else {
             let count = self.attachments.len();
             return refuse(format!(
-                "{what} wants attachment {attachment} of {count}: give one that there is"
+                "{what} has attachment index {attachment}, but there are {count} attachments: give an existing one"
             ));
         };
         let format = description.format;
@@ -107,14 +107,14 @@ impl HostRenderPass<'_> {
         let samples = if resolved { one } else { self.samples() };
         if description.samples != samples {
             return refuse(format!(
-                "{what} has {:?} samples in attachment {attachment}, where {samples:?} are wanted",
+                "{what} has {:?} samples in attachment {attachment}, but {samples:?} are needed",
                 description.samples
             ));
         }
         let what = format!("{what} in attachment {attachment}");
         attachments::check(device, &what, purpose, format, samples).or_else(refuse)?;
         if resolved && (self.samples() == one || format != self.format(self.picture)) {
-            refuse("only a multisampled picture is resolved, to the same format")
+            refuse("resolving needs a multisampled picture and the same format")
         } else {
             Ok(())
         }
@@ -131,5 +131,5 @@ impl HostRenderPass<'_> {
 }
 
 fn refuse(cause: impl std::fmt::Display) -> Result<()> {
-    Err(Error::Usage(format!("the host's render pass cannot be drawn in: {cause}")))
+    Err(Error::Usage(format!("the host's render pass is not supported: {cause}")))
 }

@@ -155,7 +155,7 @@ impl Renderer {
     ) -> Result<Self> {
         if pass == vk::RenderPass::null() {
             return Err(Error::Usage(
-                "no render pass: make one of the host's parts and of what the plan adds".into(),
+                "there is no render pass: create one of the host's parts and the plan's".into(),
             ));
         }
         // SAFETY: by the caller.
@@ -195,7 +195,7 @@ impl Renderer {
         let seeded = self.plan.seeded().is_some();
         if seeded && depth.is_none_or(|depth| depth == vk::ImageView::null()) {
             return Err(Error::Usage(
-                "splats are to start from the host's depth, and there is no view of it: give one, or make the plan without `seed`".into(),
+                "a seed needs a view of the host's depth: give one, or create the plan without `seed`".into(),
             ));
         }
         // SAFETY: by the caller.
@@ -381,7 +381,7 @@ impl Renderer {
     /// The attachments, if the area is within them.
     fn targets_of(&self, area: vk::Rect2D) -> Result<Arc<Targets>> {
         let Some(targets) = &self.targets else {
-            return Err(Error::Usage("there are no attachments: call `resize` first".into()));
+            return Err(Error::Usage("there are no attachments: call `resize` before `prepare`".into()));
         };
         let ends = [area.offset.x as u32 + area.extent.width, area.offset.y as u32 + area.extent.height];
         let [width, height] = targets.size;
@@ -389,7 +389,7 @@ impl Renderer {
             Ok(targets.clone())
         } else {
             Err(Error::Usage(format!(
-                "the viewport ends at ({}, {}), and the attachments have {width}x{height} px: call `resize` with the framebuffer's size",
+                "the viewport ends at ({}, {}), but the attachments have {width}x{height} px: call `resize` with the framebuffer's size",
                 ends[0], ends[1]
             )))
         }

@@ -88,12 +88,12 @@ impl Plan {
             .map(|(streams, settings)| variant(device, &options, *streams, settings))
             .collect::<Result<_>>()?;
         let Some(first) = variants.first() else {
-            return Err(Error::Usage("a plan of no frames: say which scenes and settings it is for".into()));
+            return Err(Error::Usage("the plan has no frames: give scenes and settings".into()));
         };
         let blends = |variant: &Variant| variant.visibility != Visibility::Nearest;
         if variants.iter().any(|variant| blends(variant) != blends(first)) {
             return Err(Error::Usage(
-                "frames that blend splats and frames that show the nearest alone have not the same subpasses: make a plan for each".into(),
+                "frames that blend splats and frames that show the nearest one only have different subpasses: make a plan for each".into(),
             ));
         }
         let seeds = host_pass.depth.is_some_and(|depth| depth.seed);
@@ -178,12 +178,12 @@ impl Plan {
     pub(super) fn check(&self, variant: &Variant) -> Result<()> {
         let refuse = |needed: &str| {
             Err(Error::Usage(format!(
-                "the frame needs {needed}, which the render pass was planned without: make the plan for such frames, too"
+                "the frame needs {needed}, which the plan does not include: create it for such frames, too"
             )))
         };
         if (variant.visibility == Visibility::Nearest) != self.steps.contains(&Step::Nearest) {
             return refuse(if variant.visibility == Visibility::Nearest {
-                "a subpass for the nearest splat alone"
+                "a subpass for the nearest splat only"
             } else {
                 "subpasses that blend splats"
             });
@@ -351,8 +351,7 @@ pub(super) fn check_method(settings: &Settings) -> Result<()> {
     match settings.pull_push {
         None => Ok(()),
         Some(_) => Err(Error::Usage(
-            "pull-push computes pyramids, which cannot be done within a render pass: draw its picture by `embed::Renderer`, or choose a \
-             method that draws splats"
+            "pull-push computes pyramids, which is not possible inside a render pass: use `embed::Renderer`, or choose a method that draws splats"
                 .into(),
         )),
     }

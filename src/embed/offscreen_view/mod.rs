@@ -118,7 +118,7 @@ impl OffscreenView {
         self.check(frame)?;
         if self.drawn.replace(frame.number) == Some(frame.number) {
             return Err(Error::Usage(
-                "an offscreen view is drawn twice in a frame: make one for each picture".into(),
+                "an offscreen view is drawn twice in a frame: create one for each picture".into(),
             ));
         }
         self.forget_thrown();
@@ -292,7 +292,7 @@ impl OffscreenView {
         if number == self.presenter {
             Ok(())
         } else {
-            Err(Error::Usage("an offscreen view is used with another window than it was made for".into()))
+            Err(Error::Usage("an offscreen view is used with another presenter: create one for each".into()))
         }
     }
 }

@@ -27,7 +27,7 @@ pub(super) struct ScalarColours {
     image: Image,
     range: Buffer,
     /// Readback buffer of the range.
-    told: Buffer,
+    readback: Buffer,
     map: ColourMap,
     range_pass: Range,
     /// Shading of the picture.
@@ -44,8 +44,8 @@ impl ScalarColours {
         let range = Range::buffer(device)?;
         let views = map.views(device, picture, &range, (&pass, &image))?;
         let range_view = Range::view(device, picture, &range)?;
-        let told = Buffer::readback(device, "screen range", range.size())?;
-        Ok(Self { views, range_view, image, range, told, map, range_pass, shading, _pass: pass })
+        let readback = Buffer::readback(device, "screen range", range.size())?;
+        Ok(Self { views, range_view, image, range, readback, map, range_pass, shading, _pass: pass })
     }
 
     /// Records the colours of `picture`, whose pixels are premultiplied scalars and α, over the settings' background.
@@ -61,14 +61,14 @@ impl ScalarColours {
         let background = settings.background.filter(|_| self.shading != Shading::Depth).unwrap_or_default();
         self.map.record(rec, &self.views, (picture, &self.range, &self.image), background, parameters);
         if self.has_range() {
-            let uses = [self.range.with(Access::COPY_READ), self.told.with(Access::COPY_WRITE)];
-            rec.pass("read range", &uses).copy(&self.range, &self.told, 0, self.range.size());
+            let uses = [self.range.with(Access::COPY_READ), self.readback.with(Access::COPY_WRITE)];
+            rec.pass("read range", &uses).copy(&self.range, &self.readback, 0, self.range.size());
         }
     }
 
     /// Accesses after recording.
     pub fn results(&self) -> [Use; 2] {
-        [self.told.with(Access::HOST_READ), self.image.with(Access::COPY_READ)]
+        [self.readback.with(Access::HOST_READ), self.image.with(Access::COPY_READ)]
     }
 
     /// Whether the colours depend on the range; coordinates of normals are from −1 to 1.
@@ -83,7 +83,7 @@ impl ScalarColours {
 
     /// The range, once the GPU has finished; `None` if no surface is visible, and for normals.
     pub fn range(&self) -> Option<ValueRange> {
-        let [min, max] = range_of(self.told.bytes()).filter(|_| self.has_range())?.map(f64::from);
+        let [min, max] = range_of(self.readback.bytes()).filter(|_| self.has_range())?.map(f64::from);
         (min.is_finite() && max.is_finite()).then_some(ValueRange { min, max })
     }
 }

@@ -81,7 +81,9 @@ fn check(bytes: &[u8], most_pixels: u64) -> ExrResult<Result<(), Cause>> {
         let window = header.shared_attributes.display_window;
         let Vec2(width, height) = header.layer_size;
         if width as u64 * height as u64 > most_pixels {
-            return Ok(Err(format!("{width}x{height} px: at most {most_pixels} pixels are read").into()));
+            return Ok(Err(
+                format!("{width}x{height} px: give a picture of at most {most_pixels} pixels").into()
+            ));
         }
         if window.size != header.layer_size || window.position != header.own_attributes.layer_position {
             return Ok(Err("its data window is not its display window: write the whole picture".into()));

@@ -66,7 +66,7 @@ impl Kind {
             Some("png") => Ok(Self::Png),
             Some("exr") => Ok(Self::Exr),
             _ => Err(Error::Usage(format!(
-                "{}: unknown kind of picture: name the file .png or .exr",
+                "{}: unknown image format: name the file .png or .exr",
                 path.display()
             ))),
         }
@@ -127,7 +127,7 @@ impl Encoded {
             Ok(Self { pixels, size })
         } else {
             Err(Error::Usage(format!(
-                "{} pixels for a picture of {width} × {height}: give as many as it has, at least one",
+                "{} pixels for a picture of {width} × {height}: give that many, at least one",
                 pixels.len()
             )))
         }
@@ -213,7 +213,7 @@ fn check(picture: &Picture) -> Result<()> {
         Ok(())
     } else {
         Err(Error::Usage(format!(
-            "a picture of {width} × {height} pixels whose images differ from that size"
+            "a picture of {width} × {height} pixels has images of another size: give one value per pixel"
         )))
     }
 }

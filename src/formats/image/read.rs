@@ -29,7 +29,7 @@ pub fn read(path: &Path) -> Result<Picture> {
         png if png.starts_with(PNG) => read_codes(png, ImageFormat::Png),
         jpeg if jpeg.starts_with(JPEG) => read_codes(jpeg, ImageFormat::Jpeg),
         exr if exr.starts_with(EXR) => exr::read(exr, MOST_PIXELS),
-        _ => Err("no PNG, JPEG or EXR file: convert it to one of them".into()),
+        _ => Err("not a PNG, JPEG or EXR file: convert it to one of these".into()),
     };
     picture.map_err(|cause: Cause| cause.in_input(path.display().to_string()))
 }
@@ -50,7 +50,7 @@ fn read_codes(bytes: &[u8], format: ImageFormat) -> Result<Picture, Cause> {
     let decoder = reader.into_decoder().map_err(|error| error.to_string())?;
     let (width, height) = decoder.dimensions();
     if u64::from(width) * u64::from(height) > MOST_PIXELS {
-        return Err(format!("{width}x{height} px: at most {MOST_PIXELS} pixels are read").into());
+        return Err(format!("{width}x{height} px: give a picture of at most {MOST_PIXELS} pixels").into());
     }
     let image = DynamicImage::from_decoder(decoder).map_err(|error| error.to_string())?;
     Ok(Picture { size: [width, height], colour: decoded(image), ..Default::default() })
@@ -148,7 +148,7 @@ mod tests {
                 read(&path).unwrap_err().to_string()
             };
             for bytes in [&b""[..], b"P6 1 1 255 abc", b"\x89PNG"] {
-                assert!(refused(bytes).contains("no PNG, JPEG or EXR file"));
+                assert!(refused(bytes).contains("not a PNG, JPEG or EXR file"));
             }
             for name in ["a.png", "a.exr"] {
                 let whole = folder.join(name);

@@ -50,20 +50,20 @@ macro_rules! arrays {
 }
 
 arrays! {
-    narrow: Vec3, |layout: &Layout| layout.narrow, "Positions as the file has them; not finite where there is none.";
-    wide: DVec3, |layout: &Layout| !layout.narrow, "The same, where f32 would round them.";
+    narrow: Vec3, |layout: &Layout| layout.narrow, "Positions in the file; not finite if missing.";
+    wide: DVec3, |layout: &Layout| !layout.narrow, "The same, if f32 would round them.";
     normals: Vec3, Layout::has_normals, "Unit normals or 0.";
     radii: f32, Layout::has_radii, "Radii or 0.";
     ellipses: Ellipse, |layout: &Layout| layout.shape != Shape::Circle, "Shapes.";
-    two_sided: bool, Layout::has_sides, "Whether the normal's side is unknown.";
-    clips: Clip, Layout::has_clips, "Clips, of two lines that are none where the disc is whole.";
+    two_sided: bool, Layout::has_sides, "Whether the surfel is two-sided.";
+    clips: Clip, Layout::has_clips, "Clips; both lines are `ClipLine::NONE` if the disc is whole.";
     weights: f32, |layout: &Layout| layout.fills(WEIGHT), "Normalization weights or 0.";
-    corners: [f32; 4], |layout: &Layout| layout.fills(CORNERS), "Those at the corners of discs at borders; all 0 of others.";
+    corners: [f32; 4], |layout: &Layout| layout.fills(CORNERS), "Corner weights of discs at borders; all 0 for others.";
     tangents: Vec3, |layout: &Layout| layout.fills(TANGENT), "Unit tangents or 0.";
     codes: [u8; 4], Layout::has_codes, "sRGB-encoded colours.";
     linear: [f32; 3], |layout: &Layout| layout.colour.is_some() && !layout.has_codes(), "Linear colours.";
     coordinates: Vec2, |layout: &Layout| layout.fills(TEXTURE), "Coordinates in a texture.";
-    materials: u16, |layout: &Layout| layout.fills(MATERIAL), "Numbers of materials, `Materials::NONE` where there is none.";
+    materials: u16, |layout: &Layout| layout.fills(MATERIAL), "Material indices, or `Materials::NONE`.";
     scalar: f64, |layout: &Layout| layout.fills(SCALAR), "The chosen scalar.";
 }
 

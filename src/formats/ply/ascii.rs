@@ -49,7 +49,7 @@ impl Reader for Tokens<'_> {
 
     fn number(&mut self, _: Scalar) -> Parsed<f64> {
         let token = self.next()?;
-        number(token).ok_or_else(|| format!("{} is no number", quoted(token)).into())
+        number(token).ok_or_else(|| format!("{} is not a number", quoted(token)).into())
     }
 
     fn skip(&mut self, _: Scalar, count: u64) -> Parsed<()> {
@@ -59,7 +59,7 @@ impl Reader for Tokens<'_> {
     fn length(&mut self, _: Scalar, _: Scalar) -> Parsed<u64> {
         let token = self.next()?;
         let length = number(token).filter(|length| *length >= 0.0 && length.fract() == 0.0);
-        let length = length.ok_or_else(|| format!("{} is no length of a list", quoted(token)))?;
+        let length = length.ok_or_else(|| format!("{} is not a list length", quoted(token)))?;
         if length > self.left() as f64 / 2.0 {
             return Err(format!(
                 "a list of {length} numbers does not fit into the {} bytes left",

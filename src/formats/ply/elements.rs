@@ -121,8 +121,8 @@ impl File<'_> {
         }
         let (arrays, tally) = points(&mut reader)?;
         let mut points = Points::new(arrays, tally)?;
-        let told = self.triangles || points.lacking;
-        let mut others = Others::new(self.header.grid, self.meter, &points, told || self.lines);
+        let needed = self.triangles || points.lacking;
+        let mut others = Others::new(self.header.grid, self.meter, &points, needed || self.lines);
         let mut used = Vec::new();
         for (element, mut reader) in elements.iter().zip(bookmarks) {
             used.push(others.read(&mut reader, element)?);
@@ -134,7 +134,7 @@ impl File<'_> {
         let OtherElements { cloud: Cloud { ribbons, tubes, triangles, view, .. }, faces, lines, materials } =
             others.finish();
         points.cloud = Cloud { ribbons, tubes, view, ..points.cloud };
-        if told || points.cloud.has_lines() {
+        if needed || points.cloud.has_lines() {
             points.cloud.triangles = triangles;
         }
         Ok(Contents { points, faces, lines, materials, trailing: reader.trailing() as u64, used })

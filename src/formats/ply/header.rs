@@ -50,7 +50,7 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
             b"property" => parse_property(line, &mut elements),
             b"end_header" => break,
             _ => Err(format!(
-                "{} is no header keyword: mark the line as `comment` if it is one",
+                "{} is not a header keyword: mark the line as `comment` if it is one",
                 quoted(keyword)
             )
             .into()),
@@ -94,7 +94,7 @@ fn parse_format(line: &[u8], header: &mut Option<Encoding>) -> Parsed<()> {
         _ => return Err("expected `format <encoding> 1.0`".into()),
     };
     if version != b"1.0" {
-        return Err(format!("version {} is not known: only 1.0 is", quoted(version)).into());
+        return Err(format!("version {} is not supported: only 1.0 is", quoted(version)).into());
     }
     let parsed = match encoding {
         b"ascii" => Encoding::Ascii,
@@ -102,7 +102,7 @@ fn parse_format(line: &[u8], header: &mut Option<Encoding>) -> Parsed<()> {
         b"binary_big_endian" => Encoding::BinaryBigEndian,
         _ => {
             return Err(format!(
-                "{} is none of ascii, binary_little_endian, binary_big_endian",
+                "{} is not an encoding: use ascii, binary_little_endian or binary_big_endian",
                 quoted(encoding)
             )
             .into());
@@ -126,7 +126,7 @@ fn parse_element<'a>(
         std::str::from_utf8(count).ok().filter(|text| text.bytes().all(|byte| byte.is_ascii_digit()));
     let Some(count) = digits.and_then(|text| text.parse().ok()) else {
         return Err(format!(
-            "{} is no number of records: expected a whole number from 0 to 2⁶⁴ − 1",
+            "{} is not a number of records: expected an integer from 0 to 2⁶⁴ − 1",
             quoted(count)
         )
         .into());
@@ -169,7 +169,7 @@ fn parse_scalar(name: &[u8]) -> Parsed<Scalar> {
             format!("{} {text}", quoted(name)).into()
         }
         _ => format!(
-            "{} is no type: PLY has char, uchar, short, ushort, int, uint, float and double",
+            "{} is not a type: PLY has char, uchar, short, ushort, int, uint, float and double",
             quoted(name)
         )
         .into(),
@@ -292,13 +292,13 @@ mod tests {
             ("format ascii 1.0\nformat ascii 1.0", "line 3: a second `format`"),
             ("format ascii 2.0", "line 2: version `2.0`"),
             ("format ascii", "expected `format"),
-            ("format utf8 1.0", "`utf8` is none of"),
+            ("format utf8 1.0", "`utf8` is not an encoding"),
             ("end_header", "no `format` line"),
             ("format ascii 1.0\nelement vertex", "expected `element"),
-            ("format ascii 1.0\nelement vertex -1", "`-1` is no number of records"),
-            ("format ascii 1.0\nelement vertex +1", "`+1` is no number of records"),
-            ("format ascii 1.0\nelement vertex 1.5", "`1.5` is no number"),
-            ("format ascii 1.0\nelement vertex 99999999999999999999", "is no number"),
+            ("format ascii 1.0\nelement vertex -1", "`-1` is not a number of records"),
+            ("format ascii 1.0\nelement vertex +1", "`+1` is not a number of records"),
+            ("format ascii 1.0\nelement vertex 1.5", "`1.5` is not a number of records"),
+            ("format ascii 1.0\nelement vertex 99999999999999999999", "is not a number of records"),
             ("format ascii 1.0\nelement v 1\nelement v 2", "line 4: a second element `v`"),
             ("format ascii 1.0\nproperty float x", "before any `element`"),
             ("format ascii 1.0\nelement v 1\nproperty float", "expected `property <type>"),
@@ -308,12 +308,12 @@ mod tests {
                 "cannot be the type of a list's length",
             ),
             ("format ascii 1.0\nelement v 1\nproperty int64 x", "64-bit integer"),
-            ("format ascii 1.0\nelement v 1\nproperty half x", "`half` is no type"),
+            ("format ascii 1.0\nelement v 1\nproperty half x", "`half` is not a type"),
             (
                 "format ascii 1.0\nelement v 1\nproperty int x\nproperty float x\nend_header",
                 "two properties named `x`",
             ),
-            ("format ascii 1.0\nCreated by hand", "line 3: `Created` is no header keyword"),
+            ("format ascii 1.0\nCreated by hand", "line 3: `Created` is not a header keyword"),
             ("format ascii 1.0", "ends within its header"),
         ];
         for (text, expected) in cases {

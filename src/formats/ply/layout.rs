@@ -279,7 +279,7 @@ impl Finder<'_> {
 fn no_scalar(name: &str, properties: &[Property]) -> String {
     let scalars = properties.iter().filter(|property| matches!(property.kind, Kind::Scalar(_)));
     format!(
-        "its vertices have no number named {}: choose one of {}",
+        "its vertices have no scalar named {}: choose one of {}",
         quoted(name.as_bytes()),
         listed(scalars.map(|property| property.name.as_str()))
     )

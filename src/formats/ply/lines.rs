@@ -50,7 +50,7 @@ struct Segment {
     turned: bool,
     tube: bool,
     /// Whether the file declares ribbon or tube, and not only an edge.
-    told: bool,
+    declared: bool,
 }
 
 /// Collects segments between the points.
@@ -80,7 +80,7 @@ impl<'a> Segments<'a> {
     }
 
     /// Adds a segment: a ribbon if both ends have normals, unless the file declares otherwise.
-    fn add(&mut self, vertices: [f64; 2], tube: Option<bool>, told: bool) {
+    fn add(&mut self, vertices: [f64; 2], tube: Option<bool>, declared: bool) {
         let cloud = &self.points.cloud;
         let [a, b] = vertices.map(|vertex| self.points.of_vertex(vertex));
         let ends = a.zip(b).filter(|&(a, b)| cloud.positions[a as usize] != cloud.positions[b as usize]);
@@ -90,7 +90,7 @@ impl<'a> Segments<'a> {
         };
         let normal = |i: u32| cloud.normals.as_ref().is_some_and(|normals| normals[i as usize] != Vec3::ZERO);
         let tube = tube == Some(true) || !(normal(a) && normal(b));
-        self.all.push(Segment { ends: [a.min(b), a.max(b)], turned: b < a, tube, told });
+        self.all.push(Segment { ends: [a.min(b), a.max(b)], turned: b < a, tube, declared });
     }
 
     /// The lines of the segments, without the sides of `triangles`.
@@ -107,23 +107,23 @@ impl<'a> Segments<'a> {
 
     fn leave_out_sides(&mut self, triangles: &[[u32; 3]]) {
         // There are few edges, but there may be many triangles.
-        let mut untold: Vec<_> =
-            self.all.iter().filter(|edge| !edge.told).map(|edge| (edge.ends, false)).collect();
-        if untold.is_empty() || triangles.is_empty() {
+        let mut undeclared: Vec<_> =
+            self.all.iter().filter(|edge| !edge.declared).map(|edge| (edge.ends, false)).collect();
+        if undeclared.is_empty() || triangles.is_empty() {
             return;
         }
-        untold.sort_unstable();
-        untold.dedup();
+        undeclared.sort_unstable();
+        undeclared.dedup();
         for &[a, b, c] in triangles {
             for (a, b) in [(a, b), (b, c), (c, a)] {
-                if let Ok(place) = untold.binary_search_by_key(&[a.min(b), a.max(b)], |(ends, _)| *ends) {
-                    untold[place].1 = true;
+                if let Ok(place) = undeclared.binary_search_by_key(&[a.min(b), a.max(b)], |(ends, _)| *ends) {
+                    undeclared[place].1 = true;
                 }
             }
         }
         let is_side = |edge: &Segment| {
-            let place = untold.binary_search_by_key(&edge.ends, |(ends, _)| *ends);
-            !edge.told && place.is_ok_and(|place| untold[place].1)
+            let place = undeclared.binary_search_by_key(&edge.ends, |(ends, _)| *ends);
+            !edge.declared && place.is_ok_and(|place| undeclared[place].1)
         };
         let before = self.all.len();
         self.all.retain(|edge| !is_side(edge));

@@ -79,8 +79,7 @@ fn nothing(count: u32, dropped: Dropped) -> Cause {
         (0, _) => "it has no vertices: give a file with at least one".into(),
         (_, 0) => format!("none of its {count} vertices has a finite position: fetch or write it again").into(),
         (_, transparent) => format!(
-            "none of its {count} 3D Gaussians is left: {transparent} are less than a tenth opaque, the others nowhere; give more \
-             opaque ones"
+            "none of its {count} 3D Gaussians is left: {transparent} are less than a tenth opaque, the others have no finite position; give more opaque ones"
         )
         .into(),
     }

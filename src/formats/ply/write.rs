@@ -37,9 +37,7 @@ pub fn write<'a>(path: &Path, parts: impl Into<Parts<'a>>) -> Result<()> {
     parts.check()?;
     let count = parts.surfels.len() + parts.primitives.map_or(0, Primitives::len);
     if u32::try_from(count).is_err() {
-        return Err(Error::Usage(format!(
-            "{count} surfels and vertices in one file: at most 2³² − 1 are read"
-        )));
+        return Err(Error::Usage(format!("{count} surfels and vertices in one file: give at most 2³² − 1")));
     }
     let contents = FileContents::new(parts)?;
     atomic::write(path, |mut out| records(&mut out, &contents))

@@ -188,7 +188,7 @@ fn weights_that_are_none_are_left_out_and_counted() {
     let expected = [(0.5, None), (0.25, Some([0.1, 0.2, 0.3, 0.4])), (0.0, None), (0.0, None), (2.0, None)];
     assert_eq!((&cloud.weights, report.weights_dropped), (&Some(Weights::collect(expected)), 5));
     let (surfels, _) = cloud.into_surfels(&Default::default(), &()).unwrap();
-    assert_eq!(surfels.weights.unwrap().of, [0.5, 0.25, 0.5, 0.5, 2.0], "the median stands in");
+    assert_eq!(surfels.weights.unwrap().of, [0.5, 0.25, 0.5, 0.5, 2.0], "the median replaces it");
     let none = text(&lines.replace("vertex 5", "vertex 1"), "0 0 0 0 0 1 1  0  0 0 0 0\n");
     assert_eq!(load(&none).cloud.weights, None);
 }
@@ -220,7 +220,7 @@ fn a_chosen_number_comes_along() {
     assert_eq!(cloud.scalar, Some(vec![300_000_010.062_5]), "more digits than f32 holds");
     let options = ReadOptions { scalar: Some("height".into()), ..Default::default() };
     let cause = read_bytes("test.ply", &file, &options).unwrap_err().to_string();
-    assert!(cause.contains("no number named `height`: choose one of `x`, `y`, `z`, `id`"), "{cause}");
+    assert!(cause.contains("no scalar named `height`: choose one of `x`, `y`, `z`, `id`"), "{cause}");
 }
 
 #[test]

@@ -42,10 +42,10 @@ fn two_normals_make_a_ribbon_unless_it_says_that_it_is_a_tube() {
         let header = format!("element vertex 4\n{FLOATS}element edge 3\n{EDGE}{more}");
         load(&text(&header, &format!("{points}{records}"))).cloud
     };
-    let untold = of("", "0 1\n2 1\n2 3\n");
-    assert_eq!((untold.ribbons, untold.tubes), (vec![[0, 1], [2, 1]], vec![[2, 3]]));
-    let told = of("\nproperty uchar tube", "0 1 1\n1 2 0\n2 3 0\n");
-    assert_eq!((told.ribbons, told.tubes), (vec![[1, 2]], vec![[0, 1], [2, 3]]));
+    let plain = of("", "0 1\n2 1\n2 3\n");
+    assert_eq!((plain.ribbons, plain.tubes), (vec![[0, 1], [2, 1]], vec![[2, 3]]));
+    let declared = of("\nproperty uchar tube", "0 1 1\n1 2 0\n2 3 0\n");
+    assert_eq!((declared.ribbons, declared.tubes), (vec![[1, 2]], vec![[0, 1], [2, 3]]));
 }
 
 #[test]
@@ -72,8 +72,8 @@ fn edges_that_are_sides_of_faces_are_no_lines_unless_they_say_so() {
     let hybrid = of("", "1 0\n0 3\n2 1\n");
     assert_eq!((hybrid.cloud.tubes, hybrid.report.lines.sides), (vec![[0, 3]], 2));
     assert_eq!(hybrid.cloud.triangles, [[0, 1, 2]]);
-    let told = of("\nproperty uchar tube", "1 0 1\n0 3 1\n2 1 1\n");
-    assert_eq!((told.cloud.tubes.len(), told.report.lines.sides), (3, 0));
+    let declared = of("\nproperty uchar tube", "1 0 1\n0 3 1\n2 1 1\n");
+    assert_eq!((declared.cloud.tubes.len(), declared.report.lines.sides), (3, 0));
     let strip = "element polyline 1\nproperty list uchar int vertex_indices";
     let header =
         format!("element vertex 4\n{XYZ}\n{strip}\nelement face 1\nproperty list uchar int vertex_indices");

@@ -35,7 +35,7 @@ fn cause(bytes: &[u8]) -> String {
     read_bytes("test.ply", bytes, &ReadOptions::default()).unwrap_err().to_string()
 }
 
-/// Two vertices, after an element of lists and before one; a list and a number that is not understood stand among the numbers.
+/// Two vertices, after an element of lists and before one; a list and a number that is not supported are among the numbers.
 fn mixed(format: &str) -> Vec<u8> {
     let header = format!(
         "ply\nformat {format} 1.0\nelement face 2\nproperty list uchar int vertex_indices\nproperty short tag\n\
@@ -146,7 +146,8 @@ fn text_records_need_no_lines_of_their_own() {
         assert_eq!(load(&ascii(2, "", records)), plain, "{records:?}");
     }
     assert!(
-        cause(&ascii(1, "", "1 2 x 0 0 1 1")).contains("record 0 of element `vertex`, `z`: `x` is no number")
+        cause(&ascii(1, "", "1 2 x 0 0 1 1"))
+            .contains("record 0 of element `vertex`, `z`: `x` is not a number")
     );
     assert!(cause(&ascii(2, "", "1.5 2.5 3.5 0 0 1 1 1 2 3 0 0 1")).contains("`radius`: the file ends here"));
 }
@@ -287,7 +288,7 @@ fn lying_counts_fail_at_once() {
 fn a_negative_list_length_is_refused() {
     let header = format!("element face 1\nproperty list char int i\nelement vertex 1\n{FLOATS}end_header\n");
     let text = cause(format!("ply\nformat ascii 1.0\n{header}-1 1 2 3 0 0 1 1").as_bytes());
-    assert!(text.contains("`-1` is no length"), "{text}");
+    assert!(text.contains("`-1` is not a list length"), "{text}");
     let binary = format!("ply\nformat binary_little_endian 1.0\n{header}");
     assert!(cause(&[binary.as_bytes(), &[0xff; 64]].concat()).contains("list of negative length"));
 }

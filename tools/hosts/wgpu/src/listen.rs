@@ -18,8 +18,8 @@ pub fn install() -> Result<&'static Listener> {
 impl Listener {
     /// Returns an error if there were messages of Vulkan.
     pub fn silent(&self) -> Result<()> {
-        let said = self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        if said.is_empty() { Ok(()) } else { Err(format!("{} messages of Vulkan", said.len()).into()) }
+        let messages = self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        if messages.is_empty() { Ok(()) } else { Err(format!("{} messages of Vulkan", messages.len()).into()) }
     }
 }
 
