@@ -6,6 +6,7 @@ mod clips;
 mod cloud;
 mod coarser;
 mod colour_map;
+mod join;
 mod materials;
 pub(crate) mod memory;
 mod merge;

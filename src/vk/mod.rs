@@ -21,7 +21,9 @@ mod commands;
 mod descriptor_pool;
 mod descriptors;
 mod device;
+mod draw_state;
 mod encoder;
+mod external_device;
 mod image;
 mod instance;
 mod limits;
@@ -47,6 +49,7 @@ mod surface;
 #[cfg(feature = "window")]
 mod swapchain;
 mod timestamps;
+mod tracker;
 mod transfer;
 mod validation;
 
@@ -57,12 +60,14 @@ pub use choose::{DeviceDescription, describe_devices, preferred};
 pub use command_pool::CommandPool;
 pub(crate) use commands::Commands;
 pub(crate) use descriptors::{Binding, DescriptorSet, HostDepth, input_layout};
-pub use device::{Device, DeviceOptions, ExternalDevice, Usage};
+pub use device::{Device, DeviceOptions, Usage};
+pub(crate) use draw_state::{Blend, DepthTest, DrawState, Topology, Within};
 pub(crate) use encoder::{Draws, Encoder};
+pub use external_device::ExternalDevice;
 pub(crate) use image::{Image, ImageUse, pixel_bytes};
 pub use limits::{Capabilities, DeviceLimits};
 pub use memory::{HostMemory, Location, MemoryBlocks, MemoryError, MemoryRequest, MemorySource};
-pub(crate) use pipeline::{Blend, ComputePipeline, DepthTest, DrawPipeline, DrawState, Topology, Within};
+pub(crate) use pipeline::{ComputePipeline, DrawPipeline};
 #[cfg(feature = "window")]
 pub(crate) use presenter::Stake;
 #[cfg(feature = "window")]

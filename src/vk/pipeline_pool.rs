@@ -1,6 +1,7 @@
 //! Live pipelines of a device by everything that they are created from: equal requests share one pipeline.
 
-use super::pipeline::{Blend, DepthTest, Raw, Topology};
+use super::draw_state::{Blend, DepthTest, Topology};
+use super::pipeline::Raw;
 use super::set_layout::SetBinding;
 use super::shader_stage::ShaderStage;
 use ash::vk;

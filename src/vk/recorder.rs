@@ -1,7 +1,8 @@
 //! Recording of a frame: the one place for the barrier, debug label and timestamp of a pass.
 
-use super::access::{Access, Barrier, Tracker, Use};
+use super::access::{Access, Use};
 use super::timestamps::{HostPass, Timestamps};
+use super::tracker::{Barrier, Tracker};
 use super::{Buffer, Device, Encoder};
 use ash::vk;
 

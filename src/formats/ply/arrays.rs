@@ -1,7 +1,8 @@
 //! Arrays of the points' attributes, filled in pieces by several threads.
 
 use super::Parsed;
-use super::layout::{CORNERS, Layout, MATERIAL, SCALAR, Shape, TANGENT, TEXTURE, WEIGHT};
+use super::columns::{CORNERS, MATERIAL, SCALAR, TANGENT, TEXTURE, WEIGHT};
+use super::layout::{Layout, Shape};
 use crate::formats::source::room;
 use crate::geometry::memory;
 use crate::geometry::{Clip, Ellipse};

@@ -1,6 +1,6 @@
 //! A block of vertex records as columns of numbers, independent of the encoding.
 
-use super::layout::COLUMNS;
+use super::columns::COLUMNS;
 use glam::DVec3;
 
 /// Maximum number of rows: few enough for the used columns to fit the cache.

@@ -2,10 +2,11 @@
 
 use super::arrays::Slices;
 use super::block::Block;
-use super::layout::{
-    AXES, CLIPS, COLOUR, CONCAVE, CORNERS, Colour, Layout, MATERIAL, NORMAL, OPACITY, POSITION, RADIUS,
-    ROTATION, SCALAR, Shape, TANGENT, TEXTURE, TWO_SIDED, WEIGHT,
+use super::columns::{
+    AXES, CLIPS, COLOUR, CONCAVE, CORNERS, MATERIAL, NORMAL, OPACITY, POSITION, RADIUS, ROTATION, SCALAR,
+    TANGENT, TEXTURE, TWO_SIDED, WEIGHT,
 };
+use super::layout::{Colour, Layout, Shape};
 use super::shape::{self, Disc};
 use crate::formats::declared::Scalar;
 use crate::geometry::srgb;

@@ -45,6 +45,7 @@ mod arrays;
 mod ascii;
 mod binary;
 mod block;
+mod columns;
 mod convert;
 mod elements;
 mod faces;
@@ -165,7 +166,7 @@ fn find_texture(
         return Ok(None);
     }
     layout.find_texture(&header.elements[vertex]);
-    if !layout.fills(layout::TEXTURE) {
+    if !layout.fills(columns::TEXTURE) {
         return Err("its vertices have no coordinates texture_u texture_v, s t or u v; those of faces' corners are not read".into());
     }
     match (&options.texture, named) {

@@ -1,6 +1,6 @@
 //! Records for ply-rs, which queries properties by name and type.
 
-use super::layout::{CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, MATERIAL_NAME, TANGENT_NAMES, WEIGHT_NAME};
+use super::columns::{CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, MATERIAL_NAME, TANGENT_NAMES, WEIGHT_NAME};
 use super::lines::TUBE;
 use super::materials;
 use super::write::FileContents;

@@ -1,6 +1,6 @@
 //! PLY writer, through ply-rs: its writer is correct for binary records if the header's counts and the lists' lengths are.
 
-use super::layout::{CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, MATERIAL_NAME, TANGENT_NAMES, WEIGHT_NAME};
+use super::columns::{CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, MATERIAL_NAME, TANGENT_NAMES, WEIGHT_NAME};
 use super::lines::TUBE;
 use super::materials;
 use super::row::{Line, Row, Shine, Triangle};
