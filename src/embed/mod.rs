@@ -142,7 +142,7 @@ pub struct Options {
 pub struct Renderer {
     // Drop order: views before their resources.
     viewed: Option<CompositeView>,
-    shown: Option<(PreparedDraw, HostPass)>,
+    pending: Option<(PreparedDraw, HostPass)>,
     reports: Reports,
     deferred: DeferredDestruction,
     composites: Vec<Arc<Composite>>,
@@ -182,7 +182,7 @@ impl Renderer {
         let options = RenderOptions { size: [1, 1], outputs, precision, rasterizer, ..Default::default() };
         Ok(Self {
             viewed: None,
-            shown: None,
+            pending: None,
             deferred: DeferredDestruction::new(frames_in_flight)?,
             reports: Reports::new(frames_in_flight),
             composites: Vec::new(),
@@ -207,10 +207,10 @@ impl Renderer {
         view: &View,
         settings: &Settings,
     ) -> Result<()> {
-        let shown = self.make(scenes.into(), view, settings);
+        let pending = self.make(scenes.into(), view, settings);
         // Also after an error: replaced resources may be in use.
         self.deferred.extend(self.frame.take_deferred());
-        let (blocks, shown) = shown?;
+        let (blocks, pending) = pending?;
         let scenes: Vec<_> = self.frame.scenes().collect();
         self.reports.begin(&self.device, &scenes)?;
         self.deferred.advance();
@@ -222,7 +222,7 @@ impl Renderer {
         if let Some(present) = self.frame.present() {
             rec.wait(&Composite::reads(&present.targets));
         }
-        self.shown = Some((shown, rec.later("composite")));
+        self.pending = Some((pending, rec.later("composite")));
         Ok(())
     }
 
@@ -233,7 +233,7 @@ impl Renderer {
     /// `cmd` is of the device and recording inside the subpass, or the dynamic rendering, of the target. It is submitted to the same queue
     /// after the commands that prepared the picture, and before those that prepare the next one.
     pub unsafe fn draw(&self, cmd: vk::CommandBuffer) -> Result<()> {
-        let (Some(viewed), Some((PreparedDraw { place, area }, pass))) = (&self.viewed, &self.shown) else {
+        let (Some(viewed), Some((PreparedDraw { place, area }, pass))) = (&self.viewed, &self.pending) else {
             return Err(Error::Usage(
                 "there is no picture to draw: prepare one, and handle its error".into(),
             ));
@@ -254,8 +254,13 @@ impl Renderer {
         settings: &Settings,
     ) -> Result<()> {
         let placed = scenes.into().placed(&self.device)?;
-        let seen = self.target_view(view)?;
-        let frame = self.frame.describe(&placed, &seen.camera, &without_background(settings), seen.size)?;
+        let target_view = self.target_view(view)?;
+        let frame = self.frame.describe(
+            &placed,
+            &target_view.camera,
+            &without_background(settings),
+            target_view.size,
+        )?;
         self.frame.make_pipelines(&frame)?;
         self.composite(&frame.variant).map(drop)
     }
@@ -288,7 +293,7 @@ impl Renderer {
         view: &View,
         settings: &Settings,
     ) -> Result<(Blocks, PreparedDraw)> {
-        self.shown = None;
+        self.pending = None;
         let placed = scenes.placed(&self.device)?;
         let TargetView { area, size, camera, depth } = self.target_view(view)?;
         self.frame.resize(size);
@@ -302,9 +307,9 @@ impl Renderer {
 
     /// The view in the conventions of the target, which is validated.
     fn target_view(&self, view: &View) -> Result<TargetView> {
-        let seen = view.in_target(&self.device, self.target.depth.map(|_| self.target.reversed))?;
-        check_size(&self.device, seen.size)?;
-        Ok(seen)
+        let target_view = view.in_target(&self.device, self.target.depth.map(|_| self.target.reversed))?;
+        check_size(&self.device, target_view.size)?;
+        Ok(target_view)
     }
 
     /// Updates the composite's view to the current targets.

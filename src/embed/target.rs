@@ -83,8 +83,8 @@ impl Target {
     fn check_locations(&self, device: &Device) -> Result<(), Cause> {
         let most = device.capabilities().max_colour_attachments;
         if self.colours.len() > most as usize {
-            let (name, asked) = (&device.description().name, self.colours.len());
-            return Err(format!("{asked} colour attachments, but {name} supports at most {most}").into());
+            let (name, count) = (&device.description().name, self.colours.len());
+            return Err(format!("{count} colour attachments, but {name} supports at most {most}").into());
         }
         let wanted = [
             ("the picture", Some(self.picture), Purpose::Blended),

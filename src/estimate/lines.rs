@@ -107,11 +107,11 @@ fn means(positions: &[Vec3], graph: &Graph) -> Vec<Vec3> {
     sums.iter().zip(&any).map(mean).collect()
 }
 
-/// Radii of all vertices. Missing ones of lines in `given` are `asked`, or are derived from the others.
+/// Radii of all vertices. Missing ones of lines in `given` are `requested`, or are derived from the others.
 pub(super) fn radii(
     cloud: &Cloud,
     given: Vec<f32>,
-    asked: Option<f32>,
+    requested: Option<f32>,
     estimated: &mut Estimated,
 ) -> Vec<f32> {
     let mut radii = given;
@@ -120,7 +120,7 @@ pub(super) fn radii(
     let lines: Vec<u32> = (0..cloud.len() as u32).filter(|&i| !graph.of(i).is_empty()).collect();
     let mut known: VecDeque<u32> = lines.iter().copied().filter(|&i| radii[i as usize] > 0.0).collect();
     estimated.line_radii_given = known.len() as u64;
-    if asked.is_none() {
+    if requested.is_none() {
         while let Some(from) = known.pop_front() {
             for &to in graph.of(from) {
                 if radii[to as usize] == 0.0 {
@@ -133,10 +133,10 @@ pub(super) fn radii(
     }
     let places: Vec<Vec3> = lines.iter().map(|&i| cloud.positions[i as usize]).collect();
     let diagonal = Bounds::of(&places).map_or(0.0, |bounds| bounds.min.distance(bounds.max));
-    let rest = asked.unwrap_or((THIN * diagonal) as f32);
+    let rest = requested.unwrap_or((THIN * diagonal) as f32);
     for &i in lines.iter().filter(|&&i| radii[i as usize] == 0.0).collect::<Vec<_>>() {
         radii[i as usize] = rest;
-        match asked {
+        match requested {
             Some(_) => estimated.line_radii_given += 1,
             None => estimated.line_radii_from_extent += 1,
         }

@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn faces_are_triangles_beside_lines_or_where_they_are_asked_for() {
+    fn faces_are_triangles_beside_lines_or_on_request() {
         let mesh = || Cloud { tubes: vec![], ..hybrid() };
         let model = |polygons| mesh().into_model(polygons, &Estimate::default(), &()).unwrap().0;
         assert_eq!((model(false).surfels.len(), model(false).primitives.is_empty()), (7, true));

@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said() {
+    fn errors_name_the_cause() {
         let with = |end: &str| format!(r#"{{"eye":[0,0,3],"target":[0,0,0],"up":[0,1,0]{end}}}"#);
         for (end, cause) in [
             ("", "either `fov_y_deg`"),

@@ -96,7 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_has_no_signature_is_told_by_its_length_its_columns_or_its_name() {
+    fn files_without_a_signature_are_identified_by_length_columns_or_name() {
         let stl = [&[0; 80][..], &2u32.to_le_bytes(), &[0; 100]].concat();
         assert!(name("a.ply", &stl, 184).contains("binary STL") && !name("a.ply", &stl, 183).contains("STL"));
         let cause = name("a.csv", b"\"X\",Y,Z,intensity\n1,2,3,4\n", 30);

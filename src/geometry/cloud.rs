@@ -172,7 +172,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_and_points_are_told_apart() {
+    fn lines_and_points_are_split() {
         let cloud = Cloud {
             positions: (0..6u8).map(|i| Vec3::splat(i.into())).collect(),
             radii: Some((0..6u8).map(f32::from).collect()),

@@ -1,6 +1,6 @@
 //! Joins of the attributes of several clouds.
 
-use super::{Clips, Cloud, Colours, Ellipse, Materials, Texture, View};
+use super::{Bounds, Clips, Cloud, Colours, Ellipse, Materials, Texture, View};
 use crate::error::Result;
 use crate::geometry::srgb;
 use glam::{DVec3, Vec3};
@@ -33,7 +33,7 @@ pub(super) fn join<T>(
     any.then(|| arrays.into_iter().zip(&*parts).flat_map(fill).collect())
 }
 
-fn circles(part: &Cloud) -> Vec<Ellipse> {
+pub(super) fn circles(part: &Cloud) -> Vec<Ellipse> {
     // Without a normal there is no disc yet.
     let circle = |normal: &Vec3| match *normal {
         Vec3::ZERO => Ellipse::circle(Vec3::Z),

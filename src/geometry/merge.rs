@@ -1,13 +1,11 @@
 //! Merging of clouds.
 
 use super::join::{
-    common_origin, common_view, join, join_clips, join_colours, join_corners, join_materials, join_textures,
+    circles, common_origin, common_view, join, join_clips, join_colours, join_corners, join_materials,
+    join_textures,
 };
-use super::{
-    Bounds, Clips, Cloud, Colours, Ellipse, Materials, Model, Primitives, Surfels, Texture, View, Weights,
-};
+use super::{Cloud, Model, Primitives, Surfels, View, Weights};
 use crate::error::{Error, Result};
-use crate::geometry::srgb;
 use glam::{DVec3, Vec3};
 
 impl Surfels {
@@ -169,6 +167,7 @@ impl Cloud {
 mod tests {
     use super::*;
     use crate::geometry::{Clip, ClipLine};
+    use crate::geometry::{Clips, Colours, Ellipse};
 
     fn part(origin: f64, x: f32, colours: Option<Colours>) -> Surfels {
         Surfels {

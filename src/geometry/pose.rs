@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_spans_what_it_is_said_to() {
+    fn a_picture_has_the_declared_span() {
         let half = 5.0 * 30f64.to_radians().tan();
         for (span, half) in [(POSE.span, half), (Span::Height(3.0), 1.5)] {
             let clip = Pose { span, ..POSE }.camera(&bounds(), 2.0).unwrap().world_to_clip();

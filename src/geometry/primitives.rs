@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_there_is_refused() {
+    fn invalid_indices_and_lengths_are_refused() {
         assert!(two().check().is_ok());
         let changes: [fn(&mut Primitives); 5] = [
             |p| p.tubes.push([0, 2]),

@@ -17,9 +17,8 @@ mod weights;
 
 use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Colours, Ellipse, Parts, Primitives, Surfels, Texture};
-use crate::vk::shaders::layout::Splat;
 use crate::vk::shaders::{Resource, resource};
-use crate::vk::{Binding, Buffer, Capabilities, Device, Uploads};
+use crate::vk::{Binding, Buffer, Device, Uploads};
 use chunks::{chunks, step};
 pub(crate) use clips::ClipChunk;
 use clips::ClipStream;

@@ -4,10 +4,10 @@ use super::choose::{DeviceDescription, choose};
 use super::descriptor_pool::DescriptorPools;
 use super::instance::Instance;
 use super::limits::{Capabilities, DeviceLimits};
-use super::memory::{self, MemoryBlocks, MemorySource};
+use super::memory::{self, MemoryBlocks};
 use super::pipeline_cache::PipelineCache;
 use super::pipeline_pool::PipelinePool;
-use super::requirements::{Abilities, QUEUE, portability_subset};
+use super::requirements::{Abilities, portability_subset};
 use super::set_layout::SetLayouts;
 #[cfg(feature = "window")]
 use super::surface::{self, Surface, Window};

@@ -1,6 +1,6 @@
 //! Compute and draw pipelines.
 
-use super::draw_state::{Blend, DrawState, Within};
+use super::draw_state::{Blend, DepthTest, DrawState, Topology, Within};
 use super::pipeline_pool::{DrawKey, PassKey, PipelineKey};
 use super::set_layout::{SetBinding, SetLayout};
 use super::shader_stage::{Code, Constants, ShaderStage, with_infos};

@@ -164,7 +164,7 @@ fn every_format_gives_what_it_holds() {
 }
 
 #[test]
-fn chunks_of_interleaved_buffers_fit_and_count_as_they_are_told() {
+fn chunks_of_interleaved_buffers_fit_and_follow_the_count() {
     let Some(host) = open(|all| all) else { return };
     let (layout, surfels) = (Layout::wide(), ellipses(20_000));
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
@@ -437,7 +437,7 @@ impl Drop for RawBuffer {
 }
 
 #[test]
-fn bounds_follow_positions_or_are_what_is_said() {
+fn bounds_follow_positions_or_are_declared() {
     let Some(device) = crate::support::gpu::device(DeviceLimits::default()) else { return };
     let surfels = sphere(500);
     let scene = Scene::upload(&device, &surfels).unwrap();

@@ -111,7 +111,7 @@ fn a_seed_heeds_radii_that_grow() {
 }
 
 #[test]
-fn as_many_surfels_are_drawn_as_are_said() {
+fn the_declared_number_of_surfels_is_drawn() {
     let Some(host) = open(|all| all) else { return };
     let all = first(&sphere(20_000), 20_000);
     for visibility in [Visibility::Ray, Visibility::Axis, Visibility::Nearest] {

@@ -120,8 +120,8 @@ pub fn lay(
     layout: &Layout,
     surfels: &Surfels,
 ) -> (Arc<Scene>, HostBuffer) {
-    let held = HostBuffer::new(host, &layout.bytes(surfels));
+    let buffer = HostBuffer::new(host, &layout.bytes(surfels));
     // SAFETY: the buffer is of the device, is created for this scene, and is destroyed last.
-    let scene = unsafe { Scene::from_buffers(device, &layout.buffers(surfels, held.0)) }.unwrap();
-    (Arc::new(scene), held)
+    let scene = unsafe { Scene::from_buffers(device, &layout.buffers(surfels, buffer.0)) }.unwrap();
+    (Arc::new(scene), buffer)
 }

@@ -109,7 +109,7 @@ use targets::Targets;
 /// Renders scenes in subpasses of a host.
 pub struct Renderer {
     // Drop order: views before their resources.
-    shown: Option<PreparedFrame>,
+    pending: Option<PreparedFrame>,
     frame: FrameResources,
     reports: Reports,
     deferred: DeferredDestruction,
@@ -162,7 +162,7 @@ impl Renderer {
         let host = unsafe { subpasses::host(&plan, pass) };
         let options = plan.options([1, 1]);
         Ok(Self {
-            shown: None,
+            pending: None,
             frame: FrameResources::new(device, options, Retired::Kept(Vec::new()), Some(host))?,
             deferred: DeferredDestruction::new(frames_in_flight)?,
             reports: Reports::new(frames_in_flight),
@@ -205,7 +205,7 @@ impl Renderer {
             _ => Targets::new(&self.device, &self.plan, size, depth)?,
         };
         let views = targets.views();
-        self.shown = None;
+        self.pending = None;
         self.frame.forget_targets();
         self.deferred.extend(self.frame.take_deferred());
         let old = self.targets.replace(Arc::new(targets));
@@ -228,7 +228,7 @@ impl Renderer {
         view: &View,
         settings: &Settings,
     ) -> Result<()> {
-        self.shown = None;
+        self.pending = None;
         let made = self.make(scenes.into(), view, settings);
         // Also after an error: replaced resources may be in use.
         self.deferred.extend(self.frame.take_deferred());
@@ -242,7 +242,7 @@ impl Renderer {
         self.frame.record(&mut rec, &blocks);
         tail.record(&mut rec, &scenes);
         let passes = self.plan.numbered().map(|(_, step)| rec.later(step.pass().name)).collect();
-        self.shown = Some(PreparedFrame { push, area, passes });
+        self.pending = Some(PreparedFrame { push, area, passes });
         Ok(())
     }
 
@@ -281,7 +281,7 @@ impl Renderer {
     /// As for [`Renderer::draw`], for the subpass of which `next` is called.
     pub unsafe fn draw_each(&self, mut next: impl FnMut(u32) -> vk::CommandBuffer) -> Result<()> {
         let (Some(PreparedFrame { push, area, passes }), Some((present, frame))) =
-            (&self.shown, self.frame.frame())
+            (&self.pending, self.frame.frame())
         else {
             return Err(Error::Usage("there is no frame to draw: prepare one, and handle its error".into()));
         };

@@ -112,7 +112,7 @@ impl OffscreenView {
         &mut self,
         frame: &Presented,
         size: [u32; 2],
-        shown: Option<SceneView<'_>>,
+        content: Option<SceneView<'_>>,
         measured: bool,
     ) -> Result<()> {
         self.check(frame)?;
@@ -129,7 +129,7 @@ impl OffscreenView {
             self.defer(frame.number, true);
             self.targets = Some(Targets::new(&self.device, &self.pass, size)?);
         }
-        let shading = shown.map(|(.., settings)| settings.shading).filter(|shading| is_scalar(*shading));
+        let shading = content.map(|(.., settings)| settings.shading).filter(|shading| is_scalar(*shading));
         if self.scalar_colours.as_ref().map(|scalar_colours| scalar_colours.shading) != shading {
             self.defer(frame.number, false);
             let picture = self.targets.as_ref().map(|targets| &targets.colour);
@@ -144,7 +144,7 @@ impl OffscreenView {
                 }
             }
         }
-        self.record(frame, shown, measured)
+        self.record(frame, content, measured)
     }
 
     /// Defers the destruction of the scalar colours, and of the targets if `with_targets`, until frame `last` is over.
@@ -181,11 +181,11 @@ impl OffscreenView {
         }
     }
 
-    fn record(&mut self, frame: &Presented, shown: Option<SceneView<'_>>, measured: bool) -> Result<()> {
+    fn record(&mut self, frame: &Presented, content: Option<SceneView<'_>>, measured: bool) -> Result<()> {
         let Some(targets) = &self.targets else { return Ok(()) };
-        let measured = shown.is_some() && measured && !self.measured;
+        let measured = content.is_some() && measured && !self.measured;
         let mut drawn = Ok(());
-        if let Some((scene, camera, settings)) = shown {
+        if let Some((scene, camera, settings)) = content {
             let view = View::whole(*camera, targets.colour.size());
             self.renderer.measure(Measured { times: measured, counts: measured });
             // SAFETY: the presenter's command buffer is recording outside a render pass, and the presenter submits in order; `draw` runs
@@ -201,12 +201,12 @@ impl OffscreenView {
         let mut rec = unsafe { Recorder::of_host_timed(&self.device, frame.cmd, timestamps) };
         let Targets { framebuffer, colour, depth, depths } = targets;
         let uses = [colour.with(Access::COLOUR_WRITE), depth.with(Access::DEPTH_WRITE)];
-        let [r, g, b] = shown.and_then(|(.., settings)| settings.background).unwrap_or_default();
+        let [r, g, b] = content.and_then(|(.., settings)| settings.background).unwrap_or_default();
         // Scalars get colours first, and the background after that.
         let behind = if self.scalar_colours.is_some() { [0.0; 4] } else { [r, g, b, 1.0] };
         let mut enc = rec.pass("screen", &uses);
         let draws = enc.render_over(framebuffer, behind);
-        if shown.is_some() && drawn.is_ok() {
+        if content.is_some() && drawn.is_ok() {
             // SAFETY: inside the renderer's target.
             drawn = unsafe { self.renderer.draw(frame.cmd) };
         }
@@ -215,7 +215,7 @@ impl OffscreenView {
         let uses = [depth.with(Access::COPY_READ), depths.with(Access::COPY_WRITE)];
         rec.pass("depths", &uses).copy_image(depth, depths);
         let mut results = vec![depths.with(Access::HOST_READ)];
-        match self.scalar_colours.as_ref().zip(shown) {
+        match self.scalar_colours.as_ref().zip(content) {
             Some((scalar_colours, (.., settings))) => {
                 scalar_colours.record(&mut rec, colour, settings);
                 results.extend(scalar_colours.results());

@@ -56,8 +56,8 @@ impl Range {
 pub fn range_of(bytes: &[u8]) -> Option<[f32; 2]> {
     let layout::NumberRange { least, greatest } = bytemuck::pod_read_unaligned(bytes);
     let number = |bits: u32| f32::from_bits(if bits & 0x8000_0000 != 0 { bits & 0x7fff_ffff } else { !bits });
-    let seen = [least, greatest] != [u32::MAX; 2];
-    seen.then(|| [number(least), number(!greatest)])
+    let visible = [least, greatest] != [u32::MAX; 2];
+    visible.then(|| [number(least), number(!greatest)])
 }
 
 #[cfg(test)]

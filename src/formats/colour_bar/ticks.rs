@@ -75,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn marks_are_round_and_the_ends_are_told() {
+    fn ticks_are_round_and_the_ends_are_labelled() {
         assert_eq!(labels(0.0, 255.0), ["0", "100", "200", "255"]);
         assert_eq!(labels(0.0, 1.0), ["0", "0.2", "0.4", "0.6", "0.8", "1"]);
         assert_eq!(labels(-0.033, 0.187), ["-0.033", "0", "0.05", "0.1", "0.15", "0.187"]);

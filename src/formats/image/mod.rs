@@ -346,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_written_is_said() {
+    fn errors_name_the_file_and_the_cause() {
         let one = picture(&[[0.0; 4]]);
         let out = Output::parse(OsStr::new("a/b.jpg"));
         for text in

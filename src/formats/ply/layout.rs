@@ -384,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missing_is_said() {
+    fn errors_name_missing_properties() {
         let cases = [
             ("x y nx ny nz radius", "no x y z"),
             ("packed_position packed_scale", "compressed 3D Gaussians"),

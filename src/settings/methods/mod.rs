@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn presets_can_be_rendered_and_told_apart() {
+    fn presets_are_valid_and_distinct() {
         for method in Method::ALL {
             method.settings().check().unwrap();
             assert_eq!(Method::named(method.name), Some(method));

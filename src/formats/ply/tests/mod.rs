@@ -153,7 +153,7 @@ fn text_records_need_no_lines_of_their_own() {
 }
 
 #[test]
-fn rows_of_another_table_are_told_apart_from_damage() {
+fn rows_of_another_table_differ_from_damage() {
     let text = cause(&ascii(3, "", "1 2 3 0 0 1 .5 9\n\n3 2 1 1 0 0 .5 9\n3 2 2 1 0 0 .5 9\n"));
     assert!(text.contains("have 8 values") && text.contains("declares 7 properties"), "{text}");
     assert!(!text.contains("damaged"), "{text}");
