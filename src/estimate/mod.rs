@@ -95,6 +95,7 @@ impl Estimate {
 
 /// Number of points by the source of their normals and radii.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Estimated {
     /// Normals from the file.
     pub normals_given: u64,

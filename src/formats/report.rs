@@ -4,6 +4,7 @@ use super::declared::{Element, Encoding};
 
 /// Result of reading a file.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Report {
     /// Encoding of the records.
     pub encoding: Encoding,

@@ -20,6 +20,7 @@ pub struct Camera {
 
 /// Parameters of the third and fourth row of a projection matrix: how depth relates to distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Projection {
     /// Whether the projection is perspective.
     pub perspective: bool,

@@ -4,6 +4,7 @@ use super::{ELLIPSE, SCALAR, SurfelLayout, VECTOR};
 
 /// Streams of a scene beside positions, normals and radii.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub struct Streams {
     /// Discs are ellipses.
     pub ellipses: bool,

@@ -1,5 +1,6 @@
 //! A command buffer with its pool and fence.
 
+use super::lock;
 use super::timestamps::Timestamps;
 use super::{Device, PassTime, Recorder};
 use crate::error::{Error, Result};
@@ -83,7 +84,7 @@ impl Commands {
         unsafe {
             raw.end_command_buffer(self.cmd).map_err(Error::vulkan("vkEndCommandBuffer"))?;
             {
-                let queue = queue.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+                let queue = lock(queue);
                 raw.queue_submit(*queue, &submit, self.fence).map_err(Error::vulkan("vkQueueSubmit"))?;
             }
             raw.wait_for_fences(&[self.fence], true, u64::MAX).map_err(Error::vulkan("vkWaitForFences"))?;

@@ -1,5 +1,6 @@
 //! Descriptor pools of a device, shared by all scenes and renderers: a scene with thousands of instances has thousands of sets.
 
+use super::lock;
 use crate::error::{Error, Result};
 use ash::vk;
 use std::sync::{Mutex, MutexGuard};
@@ -140,7 +141,7 @@ impl DescriptorPools {
     }
 
     fn lock(&self) -> MutexGuard<'_, Vec<Pool>> {
-        self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+        lock(&self.0)
     }
 }
 

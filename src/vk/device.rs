@@ -4,6 +4,7 @@ use super::choose::{DeviceDescription, choose};
 use super::descriptor_pool::DescriptorPools;
 use super::instance::Instance;
 use super::limits::{Capabilities, DeviceLimits};
+use super::lock;
 use super::memory::{self, MemoryBlocks};
 use super::pipeline_cache::PipelineCache;
 use super::pipeline_pool::PipelinePool;
@@ -232,14 +233,14 @@ impl Device {
     /// Calls `body` with the locked queue and its family; [`Error::Usage`] on an external device.
     pub fn submit<R>(&self, body: impl FnOnce(vk::Queue, u32) -> R) -> Result<R> {
         let (queue, family) = self.queue()?;
-        let queue = queue.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let queue = lock(queue);
         Ok(body(*queue, family))
     }
 
     /// Waits until the device is idle. Locks the queue meanwhile.
     pub fn wait_idle(&self) -> Result<()> {
         let (queue, _) = self.queue()?;
-        let _locked = queue.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let _locked = lock(queue);
         // SAFETY: the device's only queue is locked.
         unsafe { self.raw.device_wait_idle() }.map_err(Error::vulkan("vkDeviceWaitIdle"))
     }

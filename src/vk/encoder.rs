@@ -137,19 +137,10 @@ impl<'r, 'a> Encoder<'r, 'a> {
         unsafe { self.raw().cmd_fill_buffer(self.rec.cmd, buffer.raw, offset, size, 0) };
     }
 
-    /// Copies `size` bytes from the start of `from` to the start of `to`.
+    /// Copies the first `size` bytes of `from` to byte `to_offset` of `to`.
     pub fn copy(&mut self, from: &Buffer, to: &Buffer, to_offset: u64, size: u64) {
-        assert!(fits(0, size, from) && fits(to_offset, size, to), "a copy past the end of a buffer");
-        let region = vk::BufferCopy { src_offset: 0, dst_offset: to_offset, size };
-        // SAFETY: recorded outside a render pass; both buffers are alive and large enough.
-        unsafe { self.raw().cmd_copy_buffer(self.rec.cmd, from.raw, to.raw, &[region]) };
-    }
-
-    /// Copies all of `from` to byte `at` of `to`, which must be alive and large enough.
-    pub(super) fn copy_all(&mut self, from: &Buffer, to: vk::Buffer, at: u64) {
-        let region = vk::BufferCopy { src_offset: 0, dst_offset: at, size: from.size() };
-        // SAFETY: recorded outside a render pass; both buffers are alive and large enough.
-        unsafe { self.raw().cmd_copy_buffer(self.rec.cmd, from.raw, to, &[region]) };
+        assert!(fits(to_offset, size, to), "a copy past the end of a buffer");
+        self.copy_part(from, to.raw, [0, to_offset], size);
     }
 
     /// Copies `size` bytes between the given offsets of `from` and `to`, which must be alive and large enough.
@@ -162,10 +153,8 @@ impl<'r, 'a> Encoder<'r, 'a> {
 
     /// Copies `size` bytes at `offset` of `from` to the same offset of `to`.
     pub fn copy_range(&mut self, from: &Buffer, to: &Buffer, offset: u64, size: u64) {
-        assert!(fits(offset, size, from) && fits(offset, size, to), "a copy past the end of a buffer");
-        let region = vk::BufferCopy { src_offset: offset, dst_offset: offset, size };
-        // SAFETY: recorded outside a render pass; both buffers are alive and large enough.
-        unsafe { self.raw().cmd_copy_buffer(self.rec.cmd, from.raw, to.raw, &[region]) };
+        assert!(fits(offset, size, to), "a copy past the end of a buffer");
+        self.copy_part(from, to.raw, [offset, offset], size);
     }
 
     /// Copies all of `image` to `buffer`, tightly packed.

@@ -1,6 +1,7 @@
 //! Device memory of buffers and images: from the engine's allocator, or from the host of an external device.
 
 use super::Device;
+use super::lock;
 use crate::error::{Error, Result};
 use ash::vk;
 use gpu_allocator::vulkan::{AllocationCreateDesc, AllocationScheme, Allocator, AllocatorCreateDesc};
@@ -24,6 +25,7 @@ pub enum Location {
 
 /// A request for device memory.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct MemoryRequest<'a> {
     /// Name of the buffer or image, for debuggers.
     pub name: &'a str,
@@ -160,7 +162,7 @@ impl Source {
                     linear: request.linear,
                     allocation_scheme: AllocationScheme::GpuAllocatorManaged,
                 };
-                let mut allocator = own.allocator.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+                let mut allocator = lock(&own.allocator);
                 allocator.allocate(&description).map(Allocation::Own).map_err(MemoryError::from)
             }
             Self::Host(source) => source.allocate(request).map(Allocation::Host),
@@ -170,7 +172,7 @@ impl Source {
     fn free(&self, allocation: Allocation) {
         match (self, allocation) {
             (Self::Own(own), Allocation::Own(allocation)) => {
-                let mut allocator = own.allocator.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+                let mut allocator = lock(&own.allocator);
                 if let Err(error) = allocator.free(allocation) {
                     log::error!("freeing device memory: {error}");
                 }

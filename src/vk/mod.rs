@@ -83,3 +83,8 @@ pub use timestamps::PassTime;
 pub(crate) use timestamps::{HostPass, Timestamps};
 pub use transfer::Staging;
 pub(crate) use transfer::{Pieces, Uploads};
+
+/// Locks a mutex, also after a panic of another thread: what these mutexes guard is consistent at any time.
+fn lock<T>(mutex: &std::sync::Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+}

@@ -1,12 +1,13 @@
 //! Live pipelines of a device by everything that they are created from: equal requests share one pipeline.
 
 use super::draw_state::{Blend, DepthTest, Topology};
+use super::lock;
 use super::pipeline::Raw;
 use super::set_layout::SetBinding;
 use super::shader_stage::ShaderStage;
 use ash::vk;
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::sync::{Arc, Mutex, MutexGuard, Weak};
 
 /// Everything that a pipeline is created from.
 #[derive(Clone, PartialEq, Eq, Hash)]
@@ -71,6 +72,6 @@ impl PipelinePool {
     }
 
     fn lock(&self) -> MutexGuard<'_, HashMap<PipelineKey, Weak<Raw>>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.0)
     }
 }

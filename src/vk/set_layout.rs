@@ -1,11 +1,12 @@
 //! Descriptor set layouts. A layout has only the bindings that are present.
 
 use super::Device;
+use super::lock;
 use super::shaders::Resource;
 use crate::error::{Error, Result};
 use ash::vk;
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::sync::{Arc, Mutex, Weak};
 
 /// A binding: number, descriptor type and shader stages.
 pub(super) type SetBinding = (u32, vk::DescriptorType, vk::ShaderStageFlags);
@@ -30,7 +31,7 @@ impl SetLayout {
         let binding = |resource: &Resource| (resource.binding, resource.kind, resource.stages);
         let mut bindings: Vec<_> = resources.into_iter().map(binding).collect();
         bindings.sort_by_key(|(number, ..)| *number);
-        let mut known = device.set_layouts.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut known = lock(&device.set_layouts.0);
         if let Some(alive) = known.get(&bindings).and_then(Weak::upgrade) {
             return Ok(alive);
         }

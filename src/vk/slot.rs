@@ -1,6 +1,7 @@
 //! Resources of one frame in flight: a command buffer, a fence and a semaphore.
 
 use super::Device;
+use super::lock;
 use super::presenter::Presented;
 use crate::error::{Error, Result};
 use ash::vk;
@@ -123,7 +124,7 @@ impl Slot {
             .wait_semaphores(waits.as_slice())
             .wait_dst_stage_mask(&stages[..waits.as_slice().len()])
             .signal_semaphores(signals.as_slice())];
-        let queue = queue.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let queue = lock(queue);
         // SAFETY: the buffer was recorded whole; the fence was waited for, and the queue is locked.
         unsafe {
             self.device.raw.reset_fences(&[self.done]).map_err(Error::vulkan("vkResetFences"))?;

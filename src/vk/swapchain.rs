@@ -1,5 +1,6 @@
 //! Swapchain: the images of a window, of one size.
 
+use super::lock;
 use super::presenter::Target;
 use super::{Device, Surface, overlay::Overlay};
 use crate::error::{Error, Result};
@@ -150,7 +151,7 @@ impl Swapchain {
         let info =
             vk::PresentInfoKHR::default().swapchains(&chains).wait_semaphores(&waits).image_indices(&indices);
         let (queue, _) = device.queue()?;
-        let queue = queue.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let queue = lock(queue);
         // SAFETY: the image was acquired, and what signals the semaphore is submitted; the queue is locked.
         match unsafe { self.loader.queue_present(*queue, &info) } {
             Ok(suboptimal) => {

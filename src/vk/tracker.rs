@@ -1,6 +1,7 @@
 //! Tracking of resource accesses, from which the barriers between passes follow.
 
 use super::access::{Access, Resource, SHADER_STAGES, Use};
+use super::lock;
 use ash::vk;
 use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard};
@@ -44,7 +45,7 @@ impl History {
     }
 
     fn lock(&self) -> MutexGuard<'_, HashMap<Resource, Past>> {
-        self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+        lock(&self.0)
     }
 }
 

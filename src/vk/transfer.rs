@@ -123,7 +123,7 @@ impl<'a> Uploads<'a> {
             return Staging::default();
         }
         let mut enc = rec.pass("upload", &uses.collect::<Vec<_>>());
-        copies.iter().for_each(|copy| enc.copy_all(&copy.from, copy.to, copy.at));
+        copies.iter().for_each(|copy| enc.copy_part(&copy.from, copy.to, [0, copy.at], copy.from.size()));
         drop(enc);
         rec.settle(&copies.iter().map(|copy| copy.read).collect::<Vec<_>>());
         Staging(copies.into_iter().map(|copy| copy.from).collect())

@@ -1,5 +1,6 @@
 //! Messages of the validation layers.
 
+use super::lock;
 use ash::vk;
 use std::ffi::{CStr, c_void};
 use std::sync::Mutex;
@@ -10,12 +11,12 @@ pub(super) struct Messages(Mutex<Vec<String>>);
 
 impl Messages {
     pub(super) fn all(&self) -> Vec<String> {
-        self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clone()
+        lock(&self.0).clone()
     }
 
     fn push(&self, message: String) {
         log::error!("validation: {message}");
-        self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push(message);
+        lock(&self.0).push(message);
     }
 }
 

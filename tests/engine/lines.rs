@@ -17,7 +17,7 @@ fn an_apple_tree_becomes_ribbons_tubes_and_a_trunk() {
     let (cloud, lined) = tree.to_lines(&ToLines::default()).unwrap();
     println!("{lined:?}");
     // 2590 leaves of six triangles, of which two lie on others; and three segments each.
-    let Lined { triangles, leaves, branches, vertices } = lined;
+    let Lined { triangles, leaves, branches, vertices, .. } = lined;
     assert_eq!(leaves, [6 * 2588, 3 * 2588]);
     // Rings of five corners: ten triangles a segment.
     assert_eq!(branches[0], 10 * branches[1]);

@@ -26,6 +26,7 @@ pub struct ToLines {
 
 /// Counts of [`Cloud::to_lines`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Lined {
     /// Number of triangles, without degenerate and duplicate ones.
     pub triangles: u64,
