@@ -109,9 +109,9 @@ pub enum Filter {
 )]
 #[strum(serialize_all = "kebab-case")]
 pub enum Visibility {
-    /// All splats at most ε behind the nearest one, along the viewing ray.
+    /// Splats at most ε behind the nearest one, along the viewing ray.
     Ray,
-    /// All splats at most ε behind the nearest one, along the camera's axis: hides too much near silhouettes (ren2002 figure 5a).
+    /// Splats at most ε behind the nearest one, along the camera's axis: hides too much at silhouettes (ren2002 figure 5a).
     Axis,
     /// The nearest splat only: one pass without blending.
     Nearest,

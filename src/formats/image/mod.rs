@@ -352,7 +352,7 @@ mod tests {
         for text in
             [write(&one, Shading::Lit, &out), out.check()].map(|result| result.unwrap_err().to_string())
         {
-            assert_eq!(text, "a/b.jpg: unknown kind of picture: name the file .png or .exr");
+            assert_eq!(text, "a/b.jpg: unknown image format: name the file .png or .exr");
         }
         for name in ["no/such/a.png", "no/such/a.exr"] {
             let text = write(&one, Shading::Lit, &Output::File(name.into())).unwrap_err().to_string();
