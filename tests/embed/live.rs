@@ -498,8 +498,8 @@ fn buffers_that_cannot_be_read_are_refused_and_named() {
         (|b| b.count = 1_001, "1001 of 1000"),
         (|b| b.origin.y = f64::NAN, "origin"),
         (|b| b.bounds.radius = f64::INFINITY, "bounds"),
-        (|b| b.radii = Radii::All(-1.0e16), "radius of -1"),
-        (|b| (b.radii, b.two_sided) = (Radii::All(-1.0), false), "radius of -1"),
+        (|b| b.radii = Radii::All(-1.0e16), "radius of all is -1"),
+        (|b| (b.radii, b.two_sided) = (Radii::All(-1.0), false), "radius of all is -1"),
         (|b| b.normals.buffer = vk::Buffer::null(), "buffer is null"),
     ];
     for (change, expected) in changes {

@@ -178,7 +178,7 @@ fn updates_that_cannot_be_made_are_refused_and_change_nothing() {
     );
     refused(plain.update(0, &Changes { colours: Some(&linear), ..none }), "Srgb8");
     refused(plain.update(0, &Changes { ellipses: Some(&[]), ..none }), "circles");
-    refused(plain.update(0, &Changes { two_sided: Some(&[true]), ..none }), "along with radii");
+    refused(plain.update(0, &Changes { two_sided: Some(&[true]), ..none }), "two_sided needs radii");
     let sides = scene(|s| s.two_sided = Some(vec![true; 500]));
     refused(sides.update(0, &Changes { radii: Some(&radius), ..none }), "two_sided");
     let clipped = scene(|s| {
