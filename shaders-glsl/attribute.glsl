@@ -1,99 +1,67 @@
 // Attribute: weighted sums over the splats within ε of the nearest surface (zwicker2004 §6, second pass).
 #version 450
 #pragma variant CLIP_LINES VERTEX FRAGMENT
+#pragma variant SUBGROUPS COMPUTE
 #extension GL_GOOGLE_include_directive : require
-#ifdef COMPUTE
-#extension GL_EXT_shader_atomic_float : require
-#endif
+#include "lib/tile_pass.glsl"
 
 #define VERTICES 3
+#ifdef COMPUTE
+#include "lib/frame.glsl"
+#else
 #include "lib/instance.glsl"
+#endif
 #include "lib/sums.glsl"
 #define CLIP_ACCESS readonly
 #include "lib/splat.glsl"
 #include "lib/weights.glsl"
 
-#ifndef FRAGMENT
-
-#include "lib/surface.glsl"
-
-// What scales a splat's kernel everywhere, and what scales it further at the corners of the surfel's square.
-float weight_of(uint i, Splat splat, vec2 variance, out vec4 corners, out mat2 square) {
-    corners = vec4(1.0);
-    square = mat2(1.0);
-    if (OVERLAP) return 1.0;
-    float amplitude = amplitude_of(splat, variance);
-    uint weight = WEIGHTS ? weights[i] : floatBitsToUint(1.0);
-    if (!CORNERS || (weight & AT_CORNERS) == 0) return amplitude * uintBitsToFloat(weight);
-    float at[8];
-    for (uint k = 0; k < 8; k++) at[k] = uintBitsToFloat(weights[(weight & ~AT_CORNERS) + k]);
-    corners = vec4(at[0], at[1], at[2], at[3]);
-    vec3 to_eye = view.eye_hi.xyz - position_of(i) + view.eye_lo.xyz;
-    square = square_of(splat, vec3(at[4], at[5], at[6]), at[7], normal_of(i), to_eye);
-    return amplitude;
-}
-
-#endif
 #ifdef COMPUTE
 
 #define SUMS_ACCESS
+#define ATTRIBUTE_STEPS 62000
 #include "lib/pixels.glsl"
+#include "lib/tile.glsl"
+#include "lib/tile_attribute.glsl"
 
-float splat_weight;
-vec4 splat_corners;
-mat2 splat_square;
-vec3 splat_first, splat_second;
-
-vec2 scatter_variance(vec2 variance) {
-    return attribute_variance(variance);
+void store_sums(uint pixel, vec4 s0, vec4 s1) {
+    if (WIDE_SUMS0) for (uint k = 0; k < 4; k++) sums0[4 * pixel + k] = s0[k];
+    else sums0[pixel] = s0.x;
+    if (WIDE_SUMS1) for (uint k = 0; k < 4; k++) sums1[4 * pixel + k] = s1[k];
+    else if (SUM_DEPTH) sums1[pixel] = s1.x;
 }
 
-bool hidden(float nearest, ivec2 low, ivec2 high) {
-    uint width = (uint(frame.viewport.x) + TILE - 1) / TILE;
-    uvec2 first = uvec2(low) / TILE, last = uvec2(high) / TILE;
-    uint farthest = 0xffffffffu;
-    for (uint y = first.y; y <= last.y; y++)
-        for (uint x = first.x; x <= last.x; x++) farthest = min(farthest, tiles[y * width + x]);
-    return floatBitsToUint(max(nearest, 0.0)) < farthest;
+void load_sums(uint pixel, out vec4 s0, out vec4 s1) {
+    s0 = s1 = vec4(0.0);
+    if (WIDE_SUMS0) for (uint k = 0; k < 4; k++) s0[k] = sums0[4 * pixel + k];
+    else s0.x = sums0[pixel];
+    if (WIDE_SUMS1) for (uint k = 0; k < 4; k++) s1[k] = sums1[4 * pixel + k];
+    else if (SUM_DEPTH) s1.x = sums1[pixel];
 }
-
-bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low, ivec2 high) {
-    if (!LARGE_SPLATS && hidden(nearest, low, high)) return false;
-    splat_weight = weight_of(i, splat, variance, splat_corners, splat_square);
-    surface_of(i, splat.epsilon, splat_first, splat_second);
-    return true;
-}
-
-void scatter(uint pixel, vec2 centre, vec2 m, float key, float rank) {
-    uint nearest = visibility[pixel];
-    // Where visibility wrote nothing there is no surface, whatever the wider attribute footprint says.
-    if (nearest == 0u || floatBitsToUint(ranked(key, rank)) < nearest) return;
-    float weight = OVERLAP ? 1.0 : splat_weight * kernel(dot(m, m));
-    if (CORNERS && !OVERLAP) weight *= weight_in(splat_corners, splat_square, m);
-    if (SUM_WEIGHTS) atomicAdd(sums0[WIDE_SUMS0 ? 4 * pixel : pixel], weight);
-    if (WIDE_SUMS0) {
-        atomicAdd(sums0[4 * pixel + 1], weight * splat_first.x);
-        atomicAdd(sums0[4 * pixel + 2], weight * splat_first.y);
-        atomicAdd(sums0[4 * pixel + 3], weight * splat_first.z);
-    }
-    if (SUM_DEPTH) atomicAdd(sums1[WIDE_SUMS1 ? 4 * pixel : pixel], weight * frame.key_gain * key);
-    if (WIDE_SUMS1) {
-        atomicAdd(sums1[4 * pixel + 1], weight * splat_second.x);
-        atomicAdd(sums1[4 * pixel + 2], weight * splat_second.y);
-        atomicAdd(sums1[4 * pixel + 3], weight * splat_second.z);
-    }
-}
-
-#include "lib/scatter_splat.glsl"
 
 void main() {
-    scatter_splats();
+    load_frame();
+    uvec2 low = tile_low();
+    for (uint r = 0; r < ROWS; r++) {
+        uvec2 at = low + lane_pixel(r);
+        if (goes_on()) load_sums(is_on_picture(at) ? pixel_index(ivec2(at)) : 0, tile_sums0[r], tile_sums1[r]);
+        depths[r] = is_on_picture(at) ? uintBitsToFloat(visibility[pixel_index(ivec2(at))]) : 0.0;
+    }
+    met_count = MOST_MET + 1;
+    sum_attributes(low);
+    for (uint r = 0; r < ROWS; r++) {
+        uvec2 at = low + lane_pixel(r);
+        if (is_on_picture(at)) store_sums(pixel_index(ivec2(at)), tile_sums0[r], tile_sums1[r]);
+    }
 }
 
 #else
 #include "lib/draw_splat.glsl"
 #endif
 #ifdef VERTEX
+
+#include "lib/surface.glsl"
+#include "lib/surfel_weights.glsl"
 
 layout(location = 4) flat out float height;
 layout(location = 5) flat out vec3 first;
@@ -107,7 +75,8 @@ void main() {
     vec2 variance = attribute_variance(variance_of(splat));
     place_splat(i, splat, variance, gl_VertexIndex % 3);
     mat2 axes;
-    height = weight_of(i, splat, variance, corners, axes);
+    height = weight_of(i, splat, corners, axes);
+    if (!OVERLAP) height *= amplitude_of(splat, variance);
     square = vec4(axes[0], axes[1]);
     surface_of(i, splat.epsilon, first, second);
 }

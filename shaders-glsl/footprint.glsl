@@ -1,12 +1,21 @@
 // Footprint: each surfel becomes a splat, the image of its disc, and is culled and counted here (zwicker2004 §4).
 #version 450
+#pragma variant TILES COMPUTE
 #extension GL_GOOGLE_include_directive : require
 
 #include "lib/instance.glsl"
 #define WRITES_SPLATS
 #define CLIP_ACCESS writeonly
 #include "lib/splat.glsl"
+#ifdef TILES
+#include "lib/box.glsl"
+#include "lib/sums.glsl"
+#include "lib/surface.glsl"
+#include "lib/surfel_weights.glsl"
+#include "lib/attributes.glsl"
+#else
 #include "lib/surfels.glsl"
+#endif
 #include "lib/image.glsl"
 #include "lib/pixel_row.glsl"
 
@@ -17,11 +26,7 @@
 layout(local_size_x = 64) in;
 
 layout(constant_id = 1) const bool CULL_BACK = false;
-layout(constant_id = 11) const bool LIST_LARGE = false;
 layout(constant_id = 21) const bool MOVED = false; // splats are of discs moved away from the eye along the camera's axis, by ε
-
-#define LIST_ACCESS
-#include "lib/large_splats.glsl"
 
 // Least q, relative to (w / F)²: nearer the eye plane q has lost the digits that tell where the ellipse is.
 const float LEAST_CLEARANCE = 1e-3;
@@ -29,9 +34,6 @@ const float LEAST_CLEARANCE = 1e-3;
 const float LEAST_AREA = 1e-30;
 // Largest variance, px².
 const float LARGEST_VARIANCE = 1e30;
-
-// Pixels in the box of a splat from which on the compute rasterizer gives it a workgroup.
-const float LARGE_AREA = 1024.0;
 
 // Two unit vectors that complete n to a right-handed basis (Duff et al. 2017).
 mat2x3 tangents(vec3 n) {
@@ -116,7 +118,7 @@ void clip_splat(uint i, Disc disc, vec2 anchor) {
     if (!has_clip(number)) return;
     vec4 lines[2];
     for (uint k = 0; k < 2; k++) {
-        uint at = window.room + 8 * number + 4 * k;
+        uint at = window.capacity + 8 * number + 4 * k;
         vec3 outward = uintBitsToFloat(uvec3(clips[at], clips[at + 1], clips[at + 2]));
         lines[k] = screen_line(disc, anchor, outward, uintBitsToFloat(clips[at + 3]));
     }
@@ -184,14 +186,12 @@ uint footprint(uint i, out Splat splat) {
 
     uvec2 pixel = uvec2(clamp(middle, vec2(0.0), frame.viewport - 1.0));
     vec2 anchor = vec2(pixel) + 0.5;
-    bool listed = LIST_LARGE && 4.0 * reach.x * reach.y > LARGE_AREA;
-    if (listed) large_splats[list_start() + atomicAdd(large_splats[instance_number()], 1)] = i;
     vec2 to_centre = vec2(add(disc.x, scale(disc.w, -anchor.x)).x, add(disc.y, scale(disc.w, -anchor.y)).x) / disc.w.x;
     splat.offset = CONFETTI ? fine_offset(disc, image.conic, anchor) : to_centre + image.conic.offset;
     splat.axis = image.conic.axis;
     splat.variance = image.conic.variance.x;
     splat.turn = image.conic.turn;
-    splat.place = place_of(pixel, listed ? LARGE : SMALL);
+    splat.place = place_of(pixel);
     float epsilon = MOVED ? 0.0 : frame.epsilon * disc.radius;
     splat.epsilon = PERSPECTIVE ? disc.w.x / (disc.w.x + epsilon) : view.key_slope * epsilon;
     if (disc.facing.x > 0.0) splat.epsilon = -splat.epsilon;
@@ -205,12 +205,80 @@ uint footprint(uint i, out Splat splat) {
     return DRAWN;
 }
 
+#ifdef TILES
+
+// For tiles splats come with boxes, and with all that sums take of surfels.
+layout(set = 0, binding = 19, std430) writeonly buffer SplatBoxes { Box splat_boxes[]; };
+layout(set = 0, binding = 7, std430) writeonly buffer SplatAttributes { vec4 splat_attributes[]; };
+
+// The pixels that surfel i's splat can have fragments at.
+Box box_of_splat(uint i, Splat splat) {
+    vec2 variance = attribute_variance(variance_of(splat));
+    float stretch = stretch_of(splat, variance, centre_key(splat.plane_hi, splat.plane_lo, splat.offset));
+    vec2 reach = stretch * reach_of(splat.axis, variance);
+    vec2 first = anchor_of(splat) + splat.offset - 0.5;
+    ivec2 low = ivec2(max(ceil(first - reach), vec2(0.0)));
+    ivec2 high = ivec2(min(floor(first + reach), frame.viewport - 1.0));
+    float nearest = nearest_of(splat, variance, stretch);
+    if (any(greaterThan(low, high)) || nearest <= frame.key_far) return EMPTY_BOX;
+    uint clip = screen_clip_number(i);
+    return box_of(low, high, nearest, has_clip(clip) ? window.first_clip + clip : NO_CLIP);
+}
+
+void store_attributes(uint i, Splat splat) {
+    uint k = window.attribute_rows * splat_number(i);
+    vec4 corners;
+    mat2 square;
+    vec3 first, second;
+    float weight = weight_of(i, splat, corners, square);
+    surface_of(i, splat.epsilon, first, second);
+    if (WIDE_SUMS0 || FRAME_WEIGHTS) splat_attributes[k] = vec4(first, weight);
+    if (WIDE_SUMS1) splat_attributes[k + 1] = vec4(second, 0.0);
+    if (FRAME_CORNERS) {
+        splat_attributes[k + ATTRIBUTE_ROWS - 2] = corners;
+        splat_attributes[k + ATTRIBUTE_ROWS - 1] = vec4(square[0], -square[1].x * square[0].y + square[1].y * square[0].x, 0.0);
+    }
+}
+
+// Stores what surfel i becomes, in the order of surfels, so that neighbours stay neighbours.
+void store(uint i, uint reason, Splat splat) {
+    uint number = splat_number(i);
+    splat_boxes[number] = reason == DRAWN ? box_of_splat(i, splat) : EMPTY_BOX;
+    if (reason == DRAWN) {
+        store_attributes(i, splat);
+        // Distances as in the frame: in the world's unit.
+        if (INSTANCED && has_linear_depth()) scale_plane(view.scale, splat.plane_hi, splat.plane_lo);
+        store_splat(number, splat);
+    } else {
+        store_no_splat(number);
+    }
+}
+
+// Whether there is a surfel i. What the list has room for beside is empty.
+bool is_there(uint i) {
+    bool there = i < window.count && instance_number() < window.present;
+    if (!there && i < window.room) splat_boxes[splat_number(i)] = EMPTY_BOX;
+    return there;
+}
+
+#else
+
+void store(uint i, uint reason, Splat splat) {
+    store_splat(splat_number(i), splat);
+}
+
+bool is_there(uint i) {
+    return i < window.count;
+}
+
+#endif
+
 void main() {
     uint i = gl_GlobalInvocationID.x;
-    if (i >= window.count) return;
+    if (!is_there(i)) return;
     Splat splat = Splat(vec2(0.0), vec2(1.0, 0.0), 1.0, 0.0, 0, 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
     uint reason = footprint(i, splat);
-    splats[splat_number(i)] = splat;
+    store(i, reason, splat);
     count(reason);
 }
 

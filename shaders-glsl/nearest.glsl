@@ -1,60 +1,79 @@
 // Nearest: the nearest splat of each pixel, alone and whole: one pass, nothing is blended (zwicker2004 table 1; botsch2003 §3.2).
 #version 450
-#pragma variant COVERAGE
+#pragma variant COVERAGE VERTEX FRAGMENT
 #pragma variant CLIP_LINES VERTEX FRAGMENT
+#pragma variant SUBGROUPS COMPUTE
 #extension GL_GOOGLE_include_directive : require
-#ifdef COMPUTE
-#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
-#extension GL_EXT_shader_atomic_int64 : require
-#endif
+#include "lib/tile_pass.glsl"
 
 #define VERTICES 3
+#ifdef COMPUTE
+#include "lib/frame.glsl"
+#include "lib/picture_pixel.glsl"
+#else
 #include "lib/instance.glsl"
 #include "lib/sums.glsl"
+#endif
 #define CLIP_ACCESS readonly
 #include "lib/splat.glsl"
-#ifdef COVERAGE
-#include "lib/coverage.glsl"
-#endif
 
 #ifdef COMPUTE
 
-#define WINNER_ACCESS
-#include "lib/winners.glsl"
+// What a dispatch leaves for the next, where there are several: the depth of each pixel, and the number of its splat.
+#define VISIBILITY_ACCESS
+#define SUMS_ACCESS
+#include "lib/pixels.glsl"
+layout(set = 1, binding = 5, std430) buffer Coverage { uint coverage[]; };
 
-uint splat_index;
-float splat_key_disc;
-#ifdef COVERAGE
-Ellipse splat_solid;
-#endif
+#define ALONE
+#include "lib/tile.glsl"
+#include "lib/tile_visibility.glsl"
+#include "lib/tile_coverage.glsl"
+#include "lib/attributes.glsl"
 
-vec2 scatter_variance(vec2 variance) {
-    return visibility_variance(variance);
+// The pixel at `at`, which shows splat `id` alone, as if that were all that its sums held.
+Pixel pixel_of(uvec2 at, bool visible, uint id, float alpha) {
+    Splat splat = splat_of(id);
+    Attributes own = attributes_of(id);
+    vec2 centre = vec2(at) + 0.5;
+    float key = plane_at(splat.plane_hi, splat.plane_lo, centre - anchor_of(splat));
+    if (has_linear_depth()) key = frame.near / key;
+    return normalize_pixel(centre, visible, alpha, vec4(1.0, own.first), vec4(frame.key_gain * key, own.second));
 }
-
-bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low, ivec2 high) {
-    splat_index = i;
-    splat_key_disc = splat.key_disc;
-#ifdef COVERAGE
-    splat_solid = solid_of(splat, screen_clip_number(i));
-#endif
-    return true;
-}
-
-void scatter(uint pixel, vec2 centre, vec2 m, float key, float rank) {
-#ifdef COVERAGE
-    cover(pixel, splat_solid, centre);
-#endif
-    atomicMax(winners[pixel], winner(ranked(min(key, splat_key_disc), rank), splat_index));
-}
-
-#include "lib/scatter_splat.glsl"
 
 void main() {
-    scatter_splats();
+    load_frame();
+    uvec2 low = tile_low();
+    for (uint r = 0; r < ROWS; r++) {
+        uvec2 at = low + lane_pixel(r);
+        uint pixel = is_on_picture(at) ? pixel_index(ivec2(at)) : 0;
+        if (goes_on()) depths[r] = uintBitsToFloat(visibility[pixel]);
+        if (goes_on()) winners[r] = floatBitsToUint(sums0[pixel]);
+        if (goes_on() && COVERAGE) covered[r] = coverage[pixel];
+    }
+    find_visible(low);
+    if (COVERAGE) find_covered(low);
+    for (uint r = 0; r < ROWS; r++) {
+        uvec2 at = low + lane_pixel(r);
+        if (!SLICED || !is_on_picture(at)) continue;
+        uint pixel = pixel_index(ivec2(at));
+        visibility[pixel] = floatBitsToUint(depths[r]);
+        sums0[pixel] = uintBitsToFloat(winners[r]);
+        if (COVERAGE) coverage[pixel] = covered[r];
+    }
+    if (!is_last()) return;
+    for (uint r = 0; r < ROWS; r++) {
+        uvec2 at = low + lane_pixel(r);
+        float alpha = COVERAGE ? bitCount(covered[r]) / 16.0 : 1.0;
+        Pixel pixel = pixel_of(at, depths[r] > 0.0, winners[r], alpha);
+        if (is_on_picture(at)) store_pixel(at.y * uint(frame.viewport.x) + at.x, pixel);
+    }
 }
 
 #else
+#ifdef COVERAGE
+#include "lib/coverage.glsl"
+#endif
 #include "lib/draw_splat.glsl"
 #endif
 #ifdef VERTEX

@@ -7,9 +7,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 
 #include "lib/frame.glsl"
-#include "lib/sums.glsl"
-#include "lib/shading.glsl"
-#include "lib/background.glsl"
+#include "lib/picture_pixel.glsl"
 
 // Within a pass of a host: the picture goes to the host's colours and depth.
 #if defined(SUBPASS) || defined(SUBPASS_COVERAGE)
@@ -18,8 +16,6 @@
 #ifdef SUBPASS_COVERAGE
 #define COVERAGE
 #endif
-
-layout(constant_id = 20) const bool SHADE_SPLATS = false; // colours are light already
 
 #ifdef COVERAGE
 layout(set = 1, binding = 5, std430) readonly buffer Coverage { uint coverage[]; }; // a bit a sample
@@ -34,51 +30,11 @@ float alpha_of(uint i) {
 #endif
 }
 
-struct Pixel {
-    vec4 image;
-    vec3 normal;
-    float depth;
-};
-
-// The pixel at `centre` (px), of which `alpha` is covered, from what visibility and attribute left there.
-Pixel normalize_pixel(vec2 centre, bool visible, float alpha, vec4 s0, vec4 s1) {
-    // Only what visibility wrote is there: the attribute footprint is wider and would bloat the outline.
-    if (!visible || alpha == 0.0 || SUM_WEIGHTS && !(s0.x > 0.0)) return Pixel(frame.background, vec3(0.0), 0.0);
-
-    float total = NORMALIZATION == PER_PIXEL ? s0.x : 1.0;
-    vec3 ray = centre.x * view.ray_hi[0].xyz + centre.y * view.ray_hi[1].xyz + view.ray_hi[2].xyz;
-    vec3 to_eye = PERSPECTIVE ? -normalize(ray) : -view.forward_hi.xyz;
-    vec3 normal = vec3(0.0);
-    // Opposite normals that cancel leave no direction.
-    if (SUM_NORMALS) normal = length(s0.yzw) < 1e-6 * s0.x ? to_eye : normalize(s0.yzw);
-    vec3 colour = frame.albedo.rgb;
-    if (SUM_COLOURS) colour = (SUM_NORMALS ? s1.yzw : s0.yzw) / total;
-    float depth = 0.0;
-    if (SUM_DEPTH) {
-        float key = s1.x / (s0.x * frame.key_gain);
-        depth = PERSPECTIVE ? view.near / key : view.near + (1.0 - key) / view.key_slope;
-    }
-
-    vec3 shaded;
-    if (SHADING == LIT) shaded = SHADE_SPLATS ? colour : lit(FRAME_SHINE, colour, normal, to_eye);
-    if (SHADING == COLOUR) shaded = colour;
-    if (SHADING == NORMAL) shaded = normal;
-    if (SHADING == DEPTH) shaded = vec3(depth);
-    if (SHADING == OVERLAPS || SHADING == WEIGHT) shaded = vec3(s0.x);
-    return Pixel(over_background(shaded, alpha), normal, depth);
-}
-
 #ifdef COMPUTE
 
 #include "lib/pixels.glsl"
 
-layout(set = 1, binding = 3, std430) writeonly buffer Picture { float picture[]; }; // colour, then normals, then depths
-
 layout(local_size_x = 64) in;
-
-layout(constant_id = 9) const bool OUT_NORMAL = false;
-layout(constant_id = 10) const bool OUT_DEPTH = false;
-layout(constant_id = 22) const bool NEAREST = false; // resolve left a weight where there is something
 
 vec4 fetch0(uint i, bool wide) {
     if (!wide) return vec4(sums0[i], vec3(0.0));
@@ -96,11 +52,7 @@ void main() {
     if (i >= pixels) return;
     vec2 centre = vec2(i % width, i / width) + 0.5;
     vec4 s0 = fetch0(i, WIDE_SUMS0);
-    bool visible = NEAREST ? s0.x > 0.0 : visibility[i] != 0u;
-    Pixel pixel = normalize_pixel(centre, visible, alpha_of(i), s0, fetch1(i));
-    for (uint k = 0; k < 4; k++) picture[4 * i + k] = pixel.image[k];
-    if (OUT_NORMAL) for (uint k = 0; k < 3; k++) picture[4 * pixels + 3 * i + k] = pixel.normal[k];
-    if (OUT_DEPTH) picture[(OUT_NORMAL ? 7 : 4) * pixels + i] = pixel.depth;
+    store_pixel(i, normalize_pixel(centre, visibility[i] != 0u, alpha_of(i), s0, fetch1(i)));
 }
 
 #endif

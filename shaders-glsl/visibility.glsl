@@ -1,55 +1,56 @@
 // Visibility: the depth of the nearest surface, moved back by ε along the viewing rays (zwicker2004 §6, first pass).
 #version 450
-#pragma variant COVERAGE
+#pragma variant COVERAGE VERTEX FRAGMENT
 #pragma variant CLIP_LINES VERTEX FRAGMENT
+#pragma variant SUBGROUPS COMPUTE
 #extension GL_GOOGLE_include_directive : require
+#include "lib/tile_pass.glsl"
 
 #define VERTICES 3
+#ifdef COMPUTE
+#include "lib/frame.glsl"
+#else
 #include "lib/instance.glsl"
+#endif
 #define CLIP_ACCESS readonly
 #include "lib/splat.glsl"
-#ifdef COVERAGE
-#include "lib/coverage.glsl"
-#endif
 
 #ifdef COMPUTE
 
 #define VISIBILITY_ACCESS
+#define VISIBILITY_STEPS 31000
+#define COVERAGE_STEPS 31000
 #include "lib/pixels.glsl"
+#include "lib/tile.glsl"
+#include "lib/tile_visibility.glsl"
+#include "lib/tile_coverage.glsl"
 
-float splat_epsilon, splat_key_disc;
-#ifdef COVERAGE
-Ellipse splat_solid;
-#endif
-
-vec2 scatter_variance(vec2 variance) {
-    return visibility_variance(variance);
-}
-
-bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low, ivec2 high) {
-    splat_epsilon = splat.epsilon;
-    splat_key_disc = splat.key_disc;
-#ifdef COVERAGE
-    splat_solid = solid_of(splat, screen_clip_number(i));
-#endif
-    return true;
-}
-
-void scatter(uint pixel, vec2 centre, vec2 m, float key, float rank) {
-#ifdef COVERAGE
-    cover(pixel, splat_solid, centre);
-#endif
-    float moved = visibility_key(key, splat_key_disc, splat_epsilon);
-    atomicMax(visibility[pixel], floatBitsToUint(ranked(moved, rank)));
-}
-
-#include "lib/scatter_splat.glsl"
+layout(set = 1, binding = 5, std430) buffer Coverage { uint coverage[]; };
 
 void main() {
-    scatter_splats();
+    load_frame();
+    uvec2 low = tile_low();
+    for (uint r = 0; r < ROWS; r++) {
+        uvec2 at = low + lane_pixel(r);
+        uint pixel = is_on_picture(at) ? pixel_index(ivec2(at)) : 0;
+        if (goes_on()) depths[r] = uintBitsToFloat(visibility[pixel]);
+        if (goes_on() && COVERAGE) covered[r] = coverage[pixel];
+    }
+    find_visible(low);
+    if (COVERAGE) find_covered(low);
+    for (uint r = 0; r < ROWS; r++) {
+        uvec2 at = low + lane_pixel(r);
+        if (!is_on_picture(at)) continue;
+        uint pixel = pixel_index(ivec2(at));
+        visibility[pixel] = floatBitsToUint(depths[r]);
+        if (COVERAGE) coverage[pixel] = covered[r];
+    }
 }
 
 #else
+#ifdef COVERAGE
+#include "lib/coverage.glsl"
+#endif
 #include "lib/draw_splat.glsl"
 #endif
 #ifdef VERTEX

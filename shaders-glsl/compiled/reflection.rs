@@ -25,9 +25,9 @@ pub static ATTRIBUTE_COMPUTE: Module = Module {
     name: "attribute_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("attribute_compute.spv"),
-    constants: &[0, 3, 4, 5, 7, 8, 12, 13, 14, 15, 16, 17, 18, 19, 20, 23, 24, 26, 27, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::LARGE_SPLATS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, false), (&resource::WEIGHTS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, true), (&resource::SUMS1, true), (&resource::TILES, false)],
-    push: size_of::<layout::Window>() as u32,
+    constants: &[0, 3, 4, 14, 15, 16, 17, 19, 23, 24, 44, 45, 46, 47],
+    resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, false), (&resource::SUMS0, true), (&resource::SUMS1, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false)],
+    push: size_of::<layout::Hierarchy>() as u32,
 };
 
 /// The vertex stage of `shaders-glsl/attribute.glsl`.
@@ -48,6 +48,36 @@ pub static ATTRIBUTE_CLIP_LINES_FRAGMENT: Module = Module {
     constants: &[0, 4, 15, 16, 19, 23, 24, 27],
     resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false)],
     push: 0,
+};
+
+/// The compute stage of `shaders-glsl/attribute.glsl`.
+pub static ATTRIBUTE_SUBGROUPS_COMPUTE: Module = Module {
+    name: "attribute_subgroups_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("attribute_subgroups_compute.spv"),
+    constants: &[0, 3, 4, 14, 15, 16, 17, 19, 23, 24, 44, 45, 46, 47],
+    resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, false), (&resource::SUMS0, true), (&resource::SUMS1, true), (&resource::FRAME_CLIPS, false), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false)],
+    push: size_of::<layout::Hierarchy>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/boxes.glsl`.
+pub static BOXES_COMPUTE: Module = Module {
+    name: "boxes_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("boxes_compute.spv"),
+    constants: &[],
+    resources: &[(&resource::BOXES, true)],
+    push: size_of::<layout::Level>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/boxes.glsl`.
+pub static BOXES_SUBGROUPS_COMPUTE: Module = Module {
+    name: "boxes_subgroups_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("boxes_subgroups_compute.spv"),
+    constants: &[],
+    resources: &[(&resource::BOXES, true), (&resource::BOX_TEXELS, false)],
+    push: size_of::<layout::Level>() as u32,
 };
 
 /// The vertex stage of `shaders-glsl/colour_map.glsl`.
@@ -185,8 +215,18 @@ pub static FOOTPRINT_COMPUTE: Module = Module {
     name: "footprint_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("footprint_compute.spv"),
-    constants: &[0, 1, 2, 11, 12, 13, 14, 15, 16, 21, 23, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, true), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::LARGE_SPLATS, true), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::COUNTS, true)],
+    constants: &[0, 1, 2, 12, 13, 14, 15, 16, 21, 23, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+    resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::COUNTS, true)],
+    push: size_of::<layout::Window>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/footprint.glsl`.
+pub static FOOTPRINT_TILES_COMPUTE: Module = Module {
+    name: "footprint_tiles_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("footprint_tiles_compute.spv"),
+    constants: &[0, 1, 2, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 21, 23, 26, 27, 37, 45, 46, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+    resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::SPLAT_ATTRIBUTES, true), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::WEIGHTS, false), (&resource::SPLAT_BOXES, true), (&resource::COUNTS, true)],
     push: size_of::<layout::Window>() as u32,
 };
 
@@ -215,9 +255,9 @@ pub static NEAREST_COMPUTE: Module = Module {
     name: "nearest_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_compute.spv"),
-    constants: &[0, 8, 15, 16, 23, 24, 37],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false), (&resource::LARGE_SPLATS, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, false), (&resource::WINNERS, true)],
-    push: size_of::<layout::Window>() as u32,
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::SUMS0, true), (&resource::PICTURE, true), (&resource::PICTURE_COLOURS, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false)],
+    push: size_of::<layout::Hierarchy>() as u32,
 };
 
 /// The vertex stage of `shaders-glsl/nearest.glsl`.
@@ -240,16 +280,6 @@ pub static NEAREST_COVERAGE_FRAGMENT: Module = Module {
     push: 0,
 };
 
-/// The compute stage of `shaders-glsl/nearest.glsl`.
-pub static NEAREST_COVERAGE_COMPUTE: Module = Module {
-    name: "nearest_coverage_compute",
-    stage: ShaderStageFlags::COMPUTE,
-    spirv: spirv!("nearest_coverage_compute.spv"),
-    constants: &[0, 8, 15, 16, 23, 24, 37],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false), (&resource::LARGE_SPLATS, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, false), (&resource::WINNERS, true), (&resource::COVERAGE, true)],
-    push: size_of::<layout::Window>() as u32,
-};
-
 /// The vertex stage of `shaders-glsl/nearest.glsl`.
 pub static NEAREST_CLIP_LINES_VERTEX: Module = Module {
     name: "nearest_clip_lines_vertex",
@@ -268,6 +298,16 @@ pub static NEAREST_CLIP_LINES_FRAGMENT: Module = Module {
     constants: &[0, 4, 15, 16, 23, 24],
     resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false)],
     push: 0,
+};
+
+/// The compute stage of `shaders-glsl/nearest.glsl`.
+pub static NEAREST_SUBGROUPS_COMPUTE: Module = Module {
+    name: "nearest_subgroups_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("nearest_subgroups_compute.spv"),
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::SUMS0, true), (&resource::PICTURE, true), (&resource::PICTURE_COLOURS, true), (&resource::COVERAGE, true), (&resource::FRAME_CLIPS, false), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false)],
+    push: size_of::<layout::Hierarchy>() as u32,
 };
 
 /// The vertex stage of `shaders-glsl/normalize.glsl`.
@@ -295,8 +335,8 @@ pub static NORMALIZE_COMPUTE: Module = Module {
     name: "normalize_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("normalize_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 22],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, false), (&resource::SUMS1, false), (&resource::PICTURE, true)],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, false), (&resource::SUMS1, false), (&resource::PICTURE, true), (&resource::PICTURE_COLOURS, true)],
     push: 0,
 };
 
@@ -325,8 +365,8 @@ pub static NORMALIZE_COVERAGE_COMPUTE: Module = Module {
     name: "normalize_coverage_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("normalize_coverage_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 22],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, false), (&resource::SUMS1, false), (&resource::PICTURE, true), (&resource::COVERAGE, false)],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, false), (&resource::SUMS1, false), (&resource::PICTURE, true), (&resource::PICTURE_COLOURS, true), (&resource::COVERAGE, false)],
     push: 0,
 };
 
@@ -450,16 +490,6 @@ pub static RANGE_COMPUTE: Module = Module {
     push: size_of::<layout::Numbers>() as u32,
 };
 
-/// The compute stage of `shaders-glsl/resolve.glsl`.
-pub static RESOLVE_COMPUTE: Module = Module {
-    name: "resolve_compute",
-    stage: ShaderStageFlags::COMPUTE,
-    spirv: spirv!("resolve_compute.spv"),
-    constants: &[0, 3, 4, 5, 7, 15, 17, 20, 37, 50, 51, 52, 53, 54, 57, 58],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::WINNERS, false), (&resource::SUMS0, true), (&resource::SUMS1, true)],
-    push: size_of::<layout::Window>() as u32,
-};
-
 /// The vertex stage of `shaders-glsl/seed.glsl`.
 pub static SEED_VERTEX: Module = Module {
     name: "seed_vertex",
@@ -510,14 +540,24 @@ pub static SHADE_LOOKUPS_COMPUTE: Module = Module {
     push: 0,
 };
 
-/// The compute stage of `shaders-glsl/tiles.glsl`.
-pub static TILES_COMPUTE: Module = Module {
-    name: "tiles_compute",
+/// The compute stage of `shaders-glsl/surface.glsl`.
+pub static SURFACE_COMPUTE: Module = Module {
+    name: "surface_compute",
     stage: ShaderStageFlags::COMPUTE,
-    spirv: spirv!("tiles_compute.spv"),
-    constants: &[],
-    resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, false), (&resource::TILES, true)],
-    push: 0,
+    spirv: spirv!("surface_compute.spv"),
+    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::PICTURE, true), (&resource::PICTURE_COLOURS, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false)],
+    push: size_of::<layout::Hierarchy>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/surface.glsl`.
+pub static SURFACE_SUBGROUPS_COMPUTE: Module = Module {
+    name: "surface_subgroups_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("surface_subgroups_compute.spv"),
+    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::PICTURE, true), (&resource::PICTURE_COLOURS, true), (&resource::FRAME_CLIPS, false), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false)],
+    push: size_of::<layout::Hierarchy>() as u32,
 };
 
 /// The vertex stage of `shaders-glsl/visibility.glsl`.
@@ -545,9 +585,9 @@ pub static VISIBILITY_COMPUTE: Module = Module {
     name: "visibility_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("visibility_compute.spv"),
-    constants: &[0, 8, 15, 16, 23, 24, 37],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false), (&resource::LARGE_SPLATS, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, false), (&resource::VISIBILITY, true)],
-    push: size_of::<layout::Window>() as u32,
+    constants: &[0, 15, 16, 23, 24, 31, 44, 47],
+    resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_CLIPS, false)],
+    push: size_of::<layout::Hierarchy>() as u32,
 };
 
 /// The vertex stage of `shaders-glsl/visibility.glsl`.
@@ -570,16 +610,6 @@ pub static VISIBILITY_COVERAGE_FRAGMENT: Module = Module {
     push: 0,
 };
 
-/// The compute stage of `shaders-glsl/visibility.glsl`.
-pub static VISIBILITY_COVERAGE_COMPUTE: Module = Module {
-    name: "visibility_coverage_compute",
-    stage: ShaderStageFlags::COMPUTE,
-    spirv: spirv!("visibility_coverage_compute.spv"),
-    constants: &[0, 8, 15, 16, 23, 24, 37],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false), (&resource::LARGE_SPLATS, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, false), (&resource::VISIBILITY, true), (&resource::COVERAGE, true)],
-    push: size_of::<layout::Window>() as u32,
-};
-
 /// The vertex stage of `shaders-glsl/visibility.glsl`.
 pub static VISIBILITY_CLIP_LINES_VERTEX: Module = Module {
     name: "visibility_clip_lines_vertex",
@@ -598,6 +628,16 @@ pub static VISIBILITY_CLIP_LINES_FRAGMENT: Module = Module {
     constants: &[0, 15, 16, 23, 24],
     resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false)],
     push: 0,
+};
+
+/// The compute stage of `shaders-glsl/visibility.glsl`.
+pub static VISIBILITY_SUBGROUPS_COMPUTE: Module = Module {
+    name: "visibility_subgroups_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("visibility_subgroups_compute.spv"),
+    constants: &[0, 15, 16, 23, 24, 31, 44, 47],
+    resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, true), (&resource::COVERAGE, true), (&resource::FRAME_CLIPS, false), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false)],
+    push: size_of::<layout::Hierarchy>() as u32,
 };
 
 /// Ids of the specialization constants, one id for each name in all shaders.
@@ -620,7 +660,7 @@ pub mod constant {
     pub const CORNERS: u32 = 27;
     /// `COUNT`, first in `shaders-glsl/fetch.glsl`.
     pub const COUNT: u32 = 2;
-    /// `COVERAGE`, first in `shaders-glsl/shade.glsl`.
+    /// `COVERAGE`, first in `shaders-glsl/nearest.glsl`.
     pub const COVERAGE: u32 = 31;
     /// `CULL_BACK`, first in `shaders-glsl/fetch.glsl`.
     pub const CULL_BACK: u32 = 1;
@@ -634,6 +674,10 @@ pub mod constant {
     pub const ENCODE: u32 = 41;
     /// `FOOTPRINT`, first in `shaders-glsl/attribute.glsl`.
     pub const FOOTPRINT: u32 = 15;
+    /// `FRAME_CORNERS`, first in `shaders-glsl/attribute.glsl`.
+    pub const FRAME_CORNERS: u32 = 46;
+    /// `FRAME_WEIGHTS`, first in `shaders-glsl/attribute.glsl`.
+    pub const FRAME_WEIGHTS: u32 = 45;
     /// `HELD_COLOURS`, first in `shaders-glsl/attribute.glsl`.
     pub const HELD_COLOURS: u32 = 62;
     /// `HOST_DEPTH`, first in `shaders-glsl/composite.glsl`.
@@ -644,20 +688,14 @@ pub mod constant {
     pub const IDS: u32 = 39;
     /// `INSTANCED`, first in `shaders-glsl/attribute.glsl`.
     pub const INSTANCED: u32 = 37;
-    /// `LARGE_SPLATS`, first in `shaders-glsl/attribute.glsl`.
-    pub const LARGE_SPLATS: u32 = 8;
     /// `LARGE_TRIANGLES`, first in `shaders-glsl/project.glsl`.
     pub const LARGE_TRIANGLES: u32 = 30;
     /// `LIGHTS`, first in `shaders-glsl/attribute.glsl`.
     pub const LIGHTS: u32 = 7;
-    /// `LIST_LARGE`, first in `shaders-glsl/footprint.glsl`.
-    pub const LIST_LARGE: u32 = 11;
     /// `MATERIALS`, first in `shaders-glsl/shade.glsl`.
     pub const MATERIALS: u32 = 25;
     /// `MOVED`, first in `shaders-glsl/footprint.glsl`.
     pub const MOVED: u32 = 21;
-    /// `NEAREST`, first in `shaders-glsl/normalize.glsl`.
-    pub const NEAREST: u32 = 22;
     /// `NORMALIZATION`, first in `shaders-glsl/attribute.glsl`.
     pub const NORMALIZATION: u32 = 18;
     /// `NORMALS`, first in `shaders-glsl/attribute.glsl`.
@@ -666,11 +704,11 @@ pub mod constant {
     pub const NORMAL_OFFSET: u32 = 52;
     /// `NORMAL_STRIDE`, first in `shaders-glsl/attribute.glsl`.
     pub const NORMAL_STRIDE: u32 = 53;
-    /// `OUT_DEPTH`, first in `shaders-glsl/normalize.glsl`.
+    /// `OUT_DEPTH`, first in `shaders-glsl/nearest.glsl`.
     pub const OUT_DEPTH: u32 = 10;
     /// `OUT_ID`, first in `shaders-glsl/shade.glsl`.
     pub const OUT_ID: u32 = 35;
-    /// `OUT_NORMAL`, first in `shaders-glsl/normalize.glsl`.
+    /// `OUT_NORMAL`, first in `shaders-glsl/nearest.glsl`.
     pub const OUT_NORMAL: u32 = 9;
     /// `OVERLAP`, first in `shaders-glsl/attribute.glsl`.
     pub const OVERLAP: u32 = 19;
@@ -692,6 +730,8 @@ pub mod constant {
     pub const SHADE_SPLATS: u32 = 20;
     /// `SHADING`, first in `shaders-glsl/colour_map.glsl`.
     pub const SHADING: u32 = 6;
+    /// `SLICED`, first in `shaders-glsl/attribute.glsl`.
+    pub const SLICED: u32 = 47;
     /// `SUMS_TELL`, first in `shaders-glsl/normalize.glsl`.
     pub const SUMS_TELL: u32 = 42;
     /// `SUM_COLOURS`, first in `shaders-glsl/attribute.glsl`.
@@ -727,6 +767,15 @@ pub mod resource {
         name: "Alongs",
         set: 0,
         binding: 13,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `Boxes`, first in `shaders-glsl/attribute.glsl`.
+    pub static BOXES: Resource = Resource {
+        name: "Boxes",
+        set: 1,
+        binding: 6,
         kind: DescriptorType::STORAGE_BUFFER,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
@@ -776,7 +825,7 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `EllipseWords`, first in `shaders-glsl/attribute.glsl`.
+    /// `EllipseWords`, first in `shaders-glsl/fetch.glsl`.
     pub static ELLIPSE_WORDS: Resource = Resource {
         name: "EllipseWords",
         set: 0,
@@ -785,7 +834,7 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
     };
 
-    /// `Ellipses`, first in `shaders-glsl/attribute.glsl`.
+    /// `Ellipses`, first in `shaders-glsl/fetch.glsl`.
     pub static ELLIPSES: Resource = Resource {
         name: "Ellipses",
         set: 0,
@@ -803,6 +852,24 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::FRAGMENT.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
     };
 
+    /// `FrameAttributes`, first in `shaders-glsl/attribute.glsl`.
+    pub static FRAME_ATTRIBUTES: Resource = Resource {
+        name: "FrameAttributes",
+        set: 1,
+        binding: 8,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `FrameClips`, first in `shaders-glsl/attribute.glsl`.
+    pub static FRAME_CLIPS: Resource = Resource {
+        name: "FrameClips",
+        set: 1,
+        binding: 9,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
     /// `FramePicture`, first in `shaders-glsl/composite.glsl`.
     pub static FRAME_PICTURE: Resource = Resource {
         name: "FramePicture",
@@ -812,10 +879,10 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
     };
 
-    /// `LargeSplats`, first in `shaders-glsl/attribute.glsl`.
-    pub static LARGE_SPLATS: Resource = Resource {
-        name: "LargeSplats",
-        set: 0,
+    /// `FrameSplats`, first in `shaders-glsl/attribute.glsl`.
+    pub static FRAME_SPLATS: Resource = Resource {
+        name: "FrameSplats",
+        set: 1,
         binding: 7,
         kind: DescriptorType::STORAGE_BUFFER,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
@@ -875,9 +942,18 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::FRAGMENT.as_raw()),
     };
 
-    /// `Picture`, first in `shaders-glsl/normalize.glsl`.
+    /// `Picture`, first in `shaders-glsl/nearest.glsl`.
     pub static PICTURE: Resource = Resource {
         name: "Picture",
+        set: 1,
+        binding: 3,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `PictureColours`, first in `shaders-glsl/nearest.glsl`.
+    pub static PICTURE_COLOURS: Resource = Resource {
+        name: "PictureColours",
         set: 1,
         binding: 3,
         kind: DescriptorType::STORAGE_BUFFER,
@@ -893,7 +969,7 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
     };
 
-    /// `Radii`, first in `shaders-glsl/attribute.glsl`.
+    /// `Radii`, first in `shaders-glsl/fetch.glsl`.
     pub static RADII: Resource = Resource {
         name: "Radii",
         set: 0,
@@ -909,6 +985,33 @@ pub mod resource {
         binding: 10,
         kind: DescriptorType::STORAGE_BUFFER,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
+    /// `SplatAttributes`, first in `shaders-glsl/footprint.glsl`.
+    pub static SPLAT_ATTRIBUTES: Resource = Resource {
+        name: "SplatAttributes",
+        set: 0,
+        binding: 7,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `SplatBoxes`, first in `shaders-glsl/footprint.glsl`.
+    pub static SPLAT_BOXES: Resource = Resource {
+        name: "SplatBoxes",
+        set: 0,
+        binding: 19,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `SplatLayout`, first in `shaders-glsl/footprint.glsl`.
+    pub static SPLAT_LAYOUT: Resource = Resource {
+        name: "SplatLayout",
+        set: 0,
+        binding: 1,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
     /// `Splats`, first in `shaders-glsl/attribute.glsl`.
@@ -943,15 +1046,6 @@ pub mod resource {
         name: "Texture",
         set: 0,
         binding: 17,
-        kind: DescriptorType::STORAGE_BUFFER,
-        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
-    };
-
-    /// `Tiles`, first in `shaders-glsl/attribute.glsl`.
-    pub static TILES: Resource = Resource {
-        name: "Tiles",
-        set: 1,
-        binding: 4,
         kind: DescriptorType::STORAGE_BUFFER,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
@@ -1001,12 +1095,21 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
     };
 
-    /// `Winners`, first in `shaders-glsl/nearest.glsl`.
-    pub static WINNERS: Resource = Resource {
-        name: "Winners",
+    /// `attribute_texels`, first in `shaders-glsl/attribute.glsl`.
+    pub static ATTRIBUTE_TEXELS: Resource = Resource {
+        name: "attribute_texels",
         set: 1,
-        binding: 0,
-        kind: DescriptorType::STORAGE_BUFFER,
+        binding: 18,
+        kind: DescriptorType::UNIFORM_TEXEL_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `box_texels`, first in `shaders-glsl/attribute.glsl`.
+    pub static BOX_TEXELS: Resource = Resource {
+        name: "box_texels",
+        set: 1,
+        binding: 16,
+        kind: DescriptorType::UNIFORM_TEXEL_BUFFER,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
@@ -1161,6 +1264,15 @@ pub mod resource {
         binding: 0,
         kind: DescriptorType::SAMPLED_IMAGE,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
+    /// `splat_texels`, first in `shaders-glsl/attribute.glsl`.
+    pub static SPLAT_TEXELS: Resource = Resource {
+        name: "splat_texels",
+        set: 1,
+        binding: 17,
+        kind: DescriptorType::UNIFORM_TEXEL_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
     /// `sums0_image`, first in `shaders-glsl/normalize.glsl`.
@@ -1356,6 +1468,50 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Frame, shininess) == 152);
     const _: () = assert!(std::mem::offset_of!(Frame, origin) == 160);
     const _: () = assert!(std::mem::size_of::<Frame>() == 176);
+
+    /// `Hierarchy`, 60 bytes, first in `shaders-glsl/attribute.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct Hierarchy {
+        /// Byte 0.
+        pub starts: [u32; 10],
+        /// Byte 40.
+        pub attribute_rows: u32,
+        /// Byte 44.
+        pub level: u32,
+        /// Byte 48.
+        pub group: u32,
+        /// Byte 52.
+        pub slice: u32,
+        /// Byte 56.
+        pub slices: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(Hierarchy, starts) == 0);
+    const _: () = assert!(std::mem::offset_of!(Hierarchy, attribute_rows) == 40);
+    const _: () = assert!(std::mem::offset_of!(Hierarchy, level) == 44);
+    const _: () = assert!(std::mem::offset_of!(Hierarchy, group) == 48);
+    const _: () = assert!(std::mem::offset_of!(Hierarchy, slice) == 52);
+    const _: () = assert!(std::mem::offset_of!(Hierarchy, slices) == 56);
+    const _: () = assert!(std::mem::size_of::<Hierarchy>() == 60);
+
+    /// `Level`, 16 bytes, first in `shaders-glsl/boxes.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct Level {
+        /// Byte 0.
+        pub from: u32,
+        /// Byte 4.
+        pub to: u32,
+        /// Byte 8.
+        pub nodes: u32,
+        /// Byte 12.
+        pub finer: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(Level, from) == 0);
+    const _: () = assert!(std::mem::offset_of!(Level, to) == 4);
+    const _: () = assert!(std::mem::offset_of!(Level, nodes) == 8);
+    const _: () = assert!(std::mem::offset_of!(Level, finer) == 12);
+    const _: () = assert!(std::mem::size_of::<Level>() == 16);
 
     /// `Materials`, 4 bytes, first in `shaders-glsl/shade.glsl`.
     #[repr(C)]
@@ -1568,7 +1724,7 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Views, views) == 0);
     const _: () = assert!(std::mem::size_of::<Views>() == 15984);
 
-    /// `Window`, 20 bytes, first in `shaders-glsl/attribute.glsl`.
+    /// `Window`, 36 bytes, first in `shaders-glsl/attribute.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Window {
@@ -1577,17 +1733,29 @@ pub mod layout {
         /// Byte 4.
         pub first: u32,
         /// Byte 8.
-        pub room: u32,
+        pub capacity: u32,
         /// Byte 12.
-        pub clips: u32,
+        pub room: u32,
         /// Byte 16.
+        pub clips: u32,
+        /// Byte 20.
         pub instance: u32,
+        /// Byte 24.
+        pub first_clip: u32,
+        /// Byte 28.
+        pub attribute_rows: u32,
+        /// Byte 32.
+        pub present: u32,
     }
     const _: () = assert!(std::mem::offset_of!(Window, count) == 0);
     const _: () = assert!(std::mem::offset_of!(Window, first) == 4);
-    const _: () = assert!(std::mem::offset_of!(Window, room) == 8);
-    const _: () = assert!(std::mem::offset_of!(Window, clips) == 12);
-    const _: () = assert!(std::mem::offset_of!(Window, instance) == 16);
-    const _: () = assert!(std::mem::size_of::<Window>() == 20);
+    const _: () = assert!(std::mem::offset_of!(Window, capacity) == 8);
+    const _: () = assert!(std::mem::offset_of!(Window, room) == 12);
+    const _: () = assert!(std::mem::offset_of!(Window, clips) == 16);
+    const _: () = assert!(std::mem::offset_of!(Window, instance) == 20);
+    const _: () = assert!(std::mem::offset_of!(Window, first_clip) == 24);
+    const _: () = assert!(std::mem::offset_of!(Window, attribute_rows) == 28);
+    const _: () = assert!(std::mem::offset_of!(Window, present) == 32);
+    const _: () = assert!(std::mem::size_of::<Window>() == 36);
 
 }

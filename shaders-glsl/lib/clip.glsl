@@ -26,7 +26,9 @@ struct ScreenClip {
 
 const vec4 NO_LINE = vec4(1e30, 0.0, 0.0, 0.0);
 
-#ifdef SEES_CLIPS
+#if defined(SEES_CLIPS) && defined(TILE_PASS)
+layout(set = 1, binding = 9, std430) readonly buffer FrameClips { ScreenClip screen_clips[]; };
+#elif defined(SEES_CLIPS)
 // The scene's: for every surfel of the window 0, or 1 + the number of its clip with CONCAVE if its corner is; then the clips, each two
 // lines of outward (3 floats) and offset.
 layout(set = 0, binding = 9, std430) readonly buffer Clips { uint clips[]; };
@@ -45,6 +47,7 @@ ScreenClip screen_clip(uint number) {
 
 const uint CONCAVE = 0x80000000u;
 
+#ifndef TILE_PASS
 // Number of surfel i's clip in the window, or ~0 if its disc is whole.
 uint clip_number(uint i) {
 #ifdef SEES_CLIPS
@@ -52,8 +55,9 @@ uint clip_number(uint i) {
 #endif
     return ~0u;
 }
+#endif
 
-#ifndef FRAGMENT
+#if !defined(FRAGMENT) && !defined(TILE_PASS)
 // Where the instance has surfel i's clip on the screen, or ~0 if its disc is whole.
 uint screen_clip_number(uint i) {
     uint number = clip_number(i);
@@ -72,9 +76,8 @@ float clip_distance(ScreenClip clip, vec2 d) {
     return clip.first.w > 0.0 ? max(first, second) : min(first, second);
 }
 
-// What a fragment's κ is multiplied by where κ are compared; 0 where there is no fragment.
-float clip_rank(ScreenClip clip, vec2 d) {
-    float distance = clip_distance(clip, d);
+// What a fragment's κ is multiplied by where κ are compared, `distance` px from what is clipped; 0 where there is no fragment.
+float clip_rank(float distance) {
     if (BEYOND_CLIPS && distance < 0.0 && distance >= -BEYOND) return BEHIND_ALL;
     return distance >= 0.0 ? 1.0 : 0.0;
 }

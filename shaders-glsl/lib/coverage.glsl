@@ -1,7 +1,5 @@
 // Coverage: which of 16 samples of each pixel lie on a surface, hidden or not: neighbouring splats together cover what none covers alone.
 
-layout(set = 1, binding = 5, std430) buffer Coverage { uint coverage[]; }; // the 16 samples of each pixel, a bit each
-
 #include "lib/lattice.glsl"
 
 const uint ALL_SAMPLES = (1u << SAMPLES) - 1;
@@ -52,6 +50,9 @@ uint coverage_mask(Ellipse solid, vec2 pixel) {
     return mask;
 }
 
+#ifdef FRAGMENT
+layout(set = 1, binding = 5, std430) buffer Coverage { uint coverage[]; }; // the 16 samples of each pixel, a bit each
+
 // Adds what a splat covers at a pixel centre where it has a fragment.
 void cover(uint index, Ellipse solid, vec2 pixel) {
     uint covered = coverage[index];
@@ -59,3 +60,4 @@ void cover(uint index, Ellipse solid, vec2 pixel) {
     uint mask = coverage_mask(solid, pixel);
     if ((mask & ~covered) != 0) atomicOr(coverage[index], mask);
 }
+#endif

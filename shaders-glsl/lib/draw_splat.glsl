@@ -19,14 +19,6 @@ const float EDGE = 0.125;
 // A triangle that reaches further than this (px) is replaced by one over the viewport, whose edges stay exact.
 const float LARGEST = 8192.0;
 
-void scale_plane(float factor, inout vec3 hi, inout vec3 lo) {
-    for (int k = 0; k < 3; k++) {
-        vec2 scaled = two_product(hi[k], factor);
-        hi[k] = scaled.x;
-        lo[k] = lo[k] * factor + scaled.y;
-    }
-}
-
 // A corner, px, of a triangle about the ellipse with these semi-axes, px, as far as it is on the picture. A triangle that does not reach beyond
 // the picture is not clipped, which rasterizers on the CPU do in another way with all triangles of a draw.
 vec2 corner_about(vec2 centre, vec2 axis, vec2 reach, int corner) {
@@ -68,7 +60,7 @@ void place_splat(uint i, Splat splat, vec2 variance, int corner) {
 
     vec2 reach = stretch * frame.cutoff * sqrt(variance) + EDGE;
     vec2 position;
-    if (kind_of(splat) == NOT_DRAWN || nearest <= frame.key_far) {
+    if (!is_drawn(splat) || nearest <= frame.key_far) {
         position = vec2(0.0); // all corners alike: no fragments
     } else if (reach.x > 0.5 * LARGEST) {
         position = vec2(corner == 1 ? 3.0 : -1.0, corner == 2 ? 3.0 : -1.0);

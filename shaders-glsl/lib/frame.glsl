@@ -27,6 +27,24 @@ layout(set = 0, binding = 0, std140) uniform Frame {
     vec2 origin;             // of the picture in what is drawn to, px
 } frame;
 
+#ifdef TILE_PASS
+// The same in registers: within loops lavapipe loads uniforms lane by lane.
+struct FrameValues {
+    vec2 viewport;
+    float near, key_far, key_gain, cutoff, visibility_lowpass, attribute_lowpass, kernel_a, kernel_n;
+    vec4 background, albedo, radiance[4];
+    float ambient, specular, shininess;
+} frame_values;
+
+void load_frame() {
+    frame_values = FrameValues(frame.viewport, frame.near, frame.key_far, frame.key_gain, frame.cutoff, frame.visibility_lowpass,
+                               frame.attribute_lowpass, frame.kernel_a, frame.kernel_n, frame.background, frame.albedo,
+                               frame.radiance, frame.ambient, frame.specular, frame.shininess);
+}
+#define frame frame_values
+#endif
+
+
 // The camera as a scene has it in its own axes and unit.
 struct View {
     vec4 rows_hi[3];         // world → homogeneous pixel (x, y, w) for a position relative to the eye, each entry the sum of two

@@ -12,9 +12,13 @@ layout(constant_id = 37) const bool INSTANCED = false; // there are instances: e
 layout(push_constant) uniform Window {
     uint count;    // of surfels, lines or triangles
     uint first;    // number of the first in the scene
+    uint capacity; // surfels that the scene has room for in the window
     uint room;     // elements of each instance in a buffer with an element for each of them
     uint clips;    // elements of each instance in the buffer of screen clips
     uint instance; // number of the first instance, of those that the descriptor set names
+    uint first_clip; // number in the frame of the first clip on the screen that the descriptor set names
+    uint attribute_rows; // of a splat in the frame's list
+    uint present;  // instances of the frame, of those that the descriptor set names
 } window;
 
 #ifdef VERTEX

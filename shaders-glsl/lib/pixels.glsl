@@ -6,17 +6,10 @@
 #ifndef SUMS_ACCESS
 #define SUMS_ACCESS readonly
 #endif
-#ifndef TILES_ACCESS
-#define TILES_ACCESS readonly
-#endif
 
 layout(set = 1, binding = 0, std430) VISIBILITY_ACCESS buffer Visibility { uint visibility[]; }; // bits of κ: for κ ≥ 0 they order like κ
 layout(set = 1, binding = 1, std430) SUMS_ACCESS buffer Sums0 { float sums0[]; };
 layout(set = 1, binding = 2, std430) SUMS_ACCESS buffer Sums1 { float sums1[]; };
-layout(set = 1, binding = 4, std430) TILES_ACCESS buffer Tiles { uint tiles[]; }; // least visibility in each tile, empty pixels aside
-
-// Side of a tile, px.
-const uint TILE = 8;
 
 uint pixel_index(ivec2 pixel) {
     return uint(pixel.y) * uint(frame.viewport.x) + uint(pixel.x);

@@ -1,5 +1,8 @@
 // Blinn–Phong in linear light: a headlight at the eye and directional lights. All vectors are unit, world space.
 
+#ifndef LIB_SHADING
+#define LIB_SHADING
+
 layout(constant_id = 7) const uint LIGHTS = 0;
 
 // How a surface shines beside its colour: Blinn–Phong's specular factor and exponent.
@@ -44,3 +47,5 @@ vec3 lit_line(Shine shine, vec3 albedo, vec3 tangent, vec3 to_eye) {
     }
     return sum;
 }
+
+#endif

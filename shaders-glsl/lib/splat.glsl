@@ -33,7 +33,7 @@ struct Splat {
     vec2 axis;      // unit major axis of the variance V
     float variance; // V's larger eigenvalue, px²
     float turn;     // how far V's axis is turned from `axis`, which is rounded, rad; CONFETTI, otherwise 0
-    uint place;     // anchor and kind, see below
+    uint place;     // anchor, and whether it is drawn: see below
     float epsilon;  // perspective: 1 / (1 + ε/z), scales κ; orthographic: ε as a difference of κ; negative: the normal faces away
     vec3 plane_hi;  // κ of the tangent plane (has_linear_depth: distance) at the anchor, and its derivatives along x and y, per px, as
                     // sums of two floats
@@ -43,40 +43,61 @@ struct Splat {
 };
 
 #ifdef WRITES_SPLATS
-layout(set = 0, binding = 1, std430) writeonly buffer Splats { Splat splats[]; };
+layout(set = 0, binding = 1, std430) writeonly buffer Splats { uvec4 splat_rows[]; };
+layout(set = 0, binding = 1, std430) writeonly buffer SplatLayout { Splat splats[]; };
+#elif defined(TILE_PASS) && defined(SUBGROUPS)
+layout(set = 1, binding = 17) uniform utextureBuffer splat_texels;
+#define splat_row(k) texelFetch(splat_texels, int(k))
+#elif defined(TILE_PASS)
+layout(set = 1, binding = 7, std430) readonly buffer FrameSplats { uvec4 frame_splats[]; };
+#define splat_row(k) frame_splats[k]
 #elif !defined(FRAGMENT)
-// The same in rows of four words.
 layout(set = 0, binding = 1, std430) readonly buffer Splats { uvec4 splat_rows[]; };
+#define splat_row(k) splat_rows[k]
 #endif
 
-#ifndef FRAGMENT
+#if !defined(FRAGMENT) && !defined(TILE_PASS)
 // Where the instance has splat i.
 uint splat_number(uint i) {
     return instance_number() * window.room + i;
 }
 #endif
 
-#if !defined(WRITES_SPLATS) && !defined(FRAGMENT)
-// Splat i of the instance, by few wide loads.
+// Splats are loaded and stored as rows of four words, which is faster than word by word.
+#ifdef WRITES_SPLATS
+void store_splat(uint number, Splat splat) {
+    uint k = 4 * number;
+    splat_rows[k] = floatBitsToUint(vec4(splat.offset, splat.axis));
+    splat_rows[k + 1] = uvec4(floatBitsToUint(vec2(splat.variance, splat.turn)), splat.place, floatBitsToUint(splat.epsilon));
+    splat_rows[k + 2] = floatBitsToUint(vec4(splat.plane_hi, splat.sqrt_det));
+    splat_rows[k + 3] = floatBitsToUint(vec4(splat.plane_lo, splat.key_disc));
+}
+
+// Of a surfel that is culled.
+void store_no_splat(uint number) {
+    splat_rows[4 * number + 1] = uvec4(0);
+}
+#elif !defined(FRAGMENT)
+// Splat i of the instance, or of the frame.
 Splat splat_of(uint i) {
+#ifdef TILE_PASS
+    uint k = 4 * i;
+#else
     uint k = 4 * splat_number(i);
-    vec4 ellipse = uintBitsToFloat(splat_rows[k]);
-    uvec4 rest = splat_rows[k + 1];
-    vec4 plane_hi = uintBitsToFloat(splat_rows[k + 2]), plane_lo = uintBitsToFloat(splat_rows[k + 3]);
+#endif
+    vec4 ellipse = uintBitsToFloat(splat_row(k));
+    uvec4 rest = splat_row(k + 1);
+    vec4 plane_hi = uintBitsToFloat(splat_row(k + 2)), plane_lo = uintBitsToFloat(splat_row(k + 3));
     return Splat(ellipse.xy, ellipse.zw, uintBitsToFloat(rest.x), uintBitsToFloat(rest.y), rest.z, uintBitsToFloat(rest.w),
                  plane_hi.xyz, plane_hi.w, plane_lo.xyz, plane_lo.w);
 }
 #endif
 
-// Kinds of splats.
-const uint NOT_DRAWN = 0, SMALL = 1, LARGE = 2;
-
-// Whether a scatter visits the large splats, or the small ones.
-layout(constant_id = 8) const bool LARGE_SPLATS = false;
+const uint DRAWN_SPLAT = 1;
 
 // The anchor is the pixel nearest to the centre: what is given relative to it keeps its digits on large pictures.
-uint place_of(uvec2 pixel, uint kind) {
-    return pixel.x | pixel.y << 15 | kind << 30;
+uint place_of(uvec2 pixel) {
+    return pixel.x | pixel.y << 15 | DRAWN_SPLAT << 30;
 }
 
 // The pixel centre of the anchor, px.
@@ -84,8 +105,8 @@ vec2 anchor_of(Splat splat) {
     return vec2(splat.place & 0x7fff, splat.place >> 15 & 0x7fff) + 0.5;
 }
 
-uint kind_of(Splat splat) {
-    return splat.place >> 30;
+bool is_drawn(Splat splat) {
+    return splat.place >> 30 == DRAWN_SPLAT;
 }
 
 // V's eigenvalues, px²: their product is its determinant.
@@ -144,7 +165,11 @@ const float LEAST_EXPONENT = -10.0;
 float half_power(float x, float n) {
     if (n != floor(n) || n > 16.0) return pow(x, 0.5 * n);
     float power = fract(0.5 * n) > 0.0 ? sqrt(x) : 1.0;
-    for (float k = 2.0; k <= n; k += 2.0) power *= x;
+    uint whole = uint(0.5 * n);
+    for (uint bit = 0; bit < 4; bit++) {
+        power *= (whole >> bit & 1u) != 0 ? x : 1.0;
+        x *= x;
+    }
     return power;
 }
 
@@ -174,6 +199,15 @@ float plane_at(vec3 hi, vec3 lo, vec2 d) {
     vec2 slope = two_sum(x.x, y.x);
     vec2 key = two_sum(slope.x, hi.x);
     return key.x + ((key.y + slope.y) + (x.y + y.y) + (lo.x + lo.y * d.x + lo.z * d.y));
+}
+
+// Scales a plane.
+void scale_plane(float factor, inout vec3 hi, inout vec3 lo) {
+    for (int k = 0; k < 3; k++) {
+        vec2 scaled = two_product(hi[k], factor);
+        hi[k] = scaled.x;
+        lo[k] = lo[k] * factor + scaled.y;
+    }
 }
 
 float centre_key(vec3 hi, vec3 lo, vec2 offset) {
@@ -223,7 +257,7 @@ vec2 fine_place(Ellipse ellipse, vec2 d) {
 
 // The near plane's distance in the unit of the plane that a fragment sees.
 float fragment_near() {
-#ifdef FRAGMENT
+#if defined(FRAGMENT) || defined(TILE_PASS)
     return frame.near;
 #else
     return view.near;
@@ -242,11 +276,11 @@ bool splat_fragment(Ellipse ellipse, vec2 pixel, out vec2 m, out float key, out 
     bool inside =
         rim() > 1.0 ? max(abs(m.x), abs(m.y)) <= frame.cutoff : dot(m, m) <= frame.cutoff * frame.cutoff;
     rank = 1.0;
-    if (has_clip(ellipse.clip)) rank = clip_rank(screen_clip(ellipse.clip), d);
+    if (has_clip(ellipse.clip)) rank = clip_rank(clip_distance(screen_clip(ellipse.clip), d));
     return inside && rank > 0.0 && key > frame.key_far && key <= 1.0;
 }
 
-#ifndef FRAGMENT
+#if !defined(FRAGMENT) && !defined(TILE_PASS)
 // The nearest κ within `stretch` cut-offs of the ellipse: no fragment's is above it.
 float nearest_of(Splat splat, vec2 variance, float stretch) {
     vec2 minor_axis = vec2(-splat.axis.y, splat.axis.x);

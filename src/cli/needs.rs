@@ -79,8 +79,8 @@ fn cases() -> Vec<Case> {
 /// The table in Markdown.
 pub fn table() -> String {
     let mut text = String::from(
-        "| method | scene | asked for | streams, B a surfel | splats, B a surfel | passes, drawn | targets, B a px | passes, computed | targets, B a px |\n\
-         |---|---|---|---|---|---|---|---|---|\n",
+        "| method | scene | asked for | streams, B a surfel | passes, drawn | splats, B a surfel | targets, B a px | passes, computed | splats, B a surfel | targets, B a px |\n\
+         |---|---|---|---|---|---|---|---|---|---|\n",
     );
     for case in cases() {
         let [drawn, computed] =
@@ -91,15 +91,16 @@ pub fn table() -> String {
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
-            "| `{}` | {} | {} | {sum}: {} | {} | {} | {} | {} | {} |",
+            "| `{}` | {} | {} | {sum}: {} | {} | {} | {} | {} | {} | {} |",
             case.method.name,
             case.scene,
             case.asked,
             names.join(", "),
-            drawn.splat,
             drawn.passes.join(", "),
+            drawn.splat,
             targets(&drawn),
             computed.passes.join(", "),
+            computed.splat,
             targets(&computed),
         );
     }

@@ -28,7 +28,7 @@ pub fn render(task: &Task<'_>) -> Result<Outcome> {
     }
     let picture = frame.as_ref().map(reference::Frame::to_picture).unwrap_or_default();
     let counts = frame.map(|frame| counts(&frame.counts));
-    Ok(Outcome { picture, counts, times, gpu: None })
+    Ok(Outcome { picture, counts, times, split: None, gpu: None })
 }
 
 /// Renders `task` from other cameras; calls `save` with the index of the camera and the picture.

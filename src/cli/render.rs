@@ -1,6 +1,6 @@
 //! `surfel render`.
 
-use super::args::Render;
+use super::args::{PassTimes, Render};
 use super::report::{Gpu, HalfError, Report};
 use super::{camera, files, progress, reference, summary, turntable, vulkan};
 use std::path::Path;
@@ -30,6 +30,8 @@ pub struct Task<'a> {
     pub layers: Outputs,
     /// Number of frames, at least 1.
     pub frames: u32,
+    /// Whether frames whose stages are passes of their own are rendered beside.
+    pub split: bool,
     /// Receives the progress.
     pub progress: &'a dyn Progress,
 }
@@ -42,6 +44,8 @@ pub struct Outcome {
     pub counts: Option<SplatCounts>,
     /// Times of the frames.
     pub times: Times,
+    /// Times of frames whose stages are passes of their own, if they were rendered beside.
+    pub split: Option<Times>,
     /// The device and its resources; `None` for the reference.
     pub gpu: Option<Gpu>,
 }
@@ -72,9 +76,10 @@ pub fn run(args: &Render) -> Result<()> {
     let bounds = bounds.ok_or_else(|| Error::Usage("the inputs hold nothing that can be drawn".into()))?;
     let camera = camera::make(&args.camera, file, &bounds, args.size)?;
     let (layers, size, frames, progress) = (args.outputs(), args.size, args.frames, &*bars);
-    let task = Task { scene, method, camera, settings, size, layers, frames, progress };
+    let split = args.times == Some(PassTimes::Split);
+    let task = Task { scene, method, camera, settings, size, layers, frames, split, progress };
     let counts = args.json.is_some();
-    let wanted = Measured { times: counts || args.times, counts };
+    let wanted = Measured { times: counts || args.times.is_some(), counts };
     let mut outcome = if args.backend.reference {
         reference::render(&task)?
     } else {
@@ -156,9 +161,23 @@ fn check_colours(args: &Render, colouring: Option<&Colouring>, out: &Output) -> 
     }
 }
 
+/// The time of the pass that does all stages over that of the stages apart, in words.
+fn ratio(fused: &Times, split: &Times) -> String {
+    let sum = |times: &Times, names: &[&str]| -> f64 {
+        let wanted = times.passes().filter(|(label, _)| names.contains(label));
+        wanted.map(|(_, statistics)| statistics.median).sum()
+    };
+    let (together, apart) = (sum(fused, &["surface"]), sum(split, &["visibility", "attribute", "normalize"]));
+    if together > 0.0 && apart > 0.0 {
+        format!("surface / (visibility + attribute + normalize): {:.2}", together / apart)
+    } else {
+        "the device has no timestamps, or the method has no such stages".into()
+    }
+}
+
 /// Prints the summary to standard error; standard output is left to the picture.
 fn print_summary(args: &Render, loaded: &LoadedModel, outcome: &Outcome) {
-    if args.times {
+    if args.times.is_some() {
         if let Some(Gpu { description, usage, .. }) = &outcome.gpu {
             progress::say(&format!(
                 "{} ({}), {} pipelines made",
@@ -166,6 +185,10 @@ fn print_summary(args: &Render, loaded: &LoadedModel, outcome: &Outcome) {
             ));
         }
         progress::say(outcome.times.to_string().trim_end());
+        if let Some(split) = &outcome.split {
+            progress::say(split.to_string().trim_end());
+            progress::say(&ratio(&outcome.times, split));
+        }
     }
     if let Some(HalfError { largest, rms }) = outcome.gpu.as_ref().and_then(|gpu| gpu.half_error) {
         progress::say(&format!(

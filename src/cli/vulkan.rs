@@ -11,7 +11,7 @@ use surfel::embed::Measured;
 use surfel::frame::times::Times;
 use surfel::geometry::Camera;
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
-use surfel::{Error, Picture, Precision, RenderOptions, Renderer, Result, Scene, SplatCounts};
+use surfel::{Error, Picture, Precision, Rasterizer, RenderOptions, Renderer, Result, Scene, SplatCounts};
 
 /// Name of the stage of rendering, for progress.
 const FRAMES: &str = "rendering frames";
@@ -36,6 +36,7 @@ fn render_options(task: &Task<'_>, backend: &Backend, profile: bool) -> RenderOp
         rasterizer: backend.rasterizer,
         profile,
         count: false,
+        split: false,
     }
 }
 
@@ -55,11 +56,13 @@ pub fn render(
     let start = Instant::now();
     let (picture, report) = renderer.render_picture(&scene, &task.camera, &task.settings)?;
     times.add(start.elapsed(), &report.pass_times);
+    let mut split = task.split.then(|| Split::new(&device, &renderer, options)).transpose()?;
     for frame in 1..task.frames {
         task.progress.at(FRAMES, frame.into(), task.frames.into());
         let start = Instant::now();
         let report = renderer.render(&scene, &task.camera, &task.settings)?;
         times.add(start.elapsed(), &report.pass_times);
+        split.as_mut().map_or(Ok(()), |split| split.frame(task, &scene))?;
     }
     task.progress.at(FRAMES, task.frames.into(), task.frames.into());
     let mut gpu = gpu(&device, &renderer, &scene);
@@ -69,7 +72,31 @@ pub fn render(
     // Frees its targets: counting creates others.
     drop(renderer);
     let counts = if wanted.counts { count(&device, task, &scene, options)? } else { None };
-    Ok(Outcome { picture, counts, times, gpu: Some(gpu) })
+    Ok(Outcome { picture, counts, times, split: split.map(|split| split.times), gpu: Some(gpu) })
+}
+
+/// Frames whose stages are passes of their own, in turn with those that do them together.
+struct Split {
+    renderer: Renderer,
+    times: Times,
+}
+
+impl Split {
+    fn new(device: &Arc<Device>, fused: &Renderer, options: RenderOptions) -> Result<Self> {
+        if fused.rasterizer() != Some(Rasterizer::Compute) {
+            let text = "--times=split is of passes over tiles, which this frame has none of: choose --rasterizer compute";
+            return Err(Error::Usage(text.into()));
+        }
+        let renderer = Renderer::new(device, RenderOptions { split: true, ..options })?;
+        Ok(Self { renderer, times: Times::default() })
+    }
+
+    fn frame(&mut self, task: &Task<'_>, scene: &Scene) -> Result<()> {
+        let start = Instant::now();
+        let report = self.renderer.render(scene, &task.camera, &task.settings)?;
+        self.times.add(start.elapsed(), &report.pass_times);
+        Ok(())
+    }
 }
 
 /// Counts the surfels of `task` in a separate frame: counting needs atomics, which would slow the timed frames.

@@ -1,7 +1,9 @@
 //! What a frame is: decided from scenes, camera and settings, before anything is made.
 
+use super::crowding::crowded;
 use super::rasterizer::{rasterizer_of, width_of_sums};
 use super::renderer::RenderOptions;
+use super::splat_list::{room_of_frame, team_of};
 use super::uniforms::Blocks;
 use super::variant::{SceneVariant, Variant};
 use crate::error::{Error, Result};
@@ -33,7 +35,9 @@ pub fn describe(
     }
     settings.check_outputs(options.outputs)?;
     let blocks = Blocks::new(camera, settings, options.size, scenes)?;
-    let rasterizer = rasterizer_of(device, options, settings, scenes)?;
+    let team = team_of(device, room_of_frame(device, scenes));
+    let crowded = crowded(scenes, camera, options.size);
+    let rasterizer = rasterizer_of(device, options, settings, scenes, team.is_some())?;
     let perspective = camera.projection()?.perspective;
     let precision = match settings.pull_push {
         Some(_) => options.precision,
@@ -42,6 +46,7 @@ pub fn describe(
     let options = RenderOptions { precision, ..*options };
     let streams: Vec<_> = scenes.iter().map(|placed| placed.scene.streams()).collect();
     let variant = Variant::new(&streams, perspective, settings, &options, rasterizer);
+    let variant = Variant { team: team.unwrap_or_default(), ..variant }.crowded(crowded);
     check_lookups(&variant, scenes)?;
     let instanced = !blocks.instances.is_empty();
     let scenes = streams.into_iter().map(|streams| SceneVariant::new(variant, streams, instanced)).collect();

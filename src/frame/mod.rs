@@ -28,6 +28,7 @@
 #![doc = include_str!("needs.md")]
 
 mod compact;
+mod crowding;
 pub(crate) mod description;
 mod methods;
 pub(crate) mod pass;
@@ -45,6 +46,7 @@ pub(crate) mod resources;
 mod scene_cache;
 pub(crate) mod scene_resources;
 mod splat_buffers;
+pub(crate) mod splat_list;
 pub(crate) mod targets;
 pub mod times;
 pub(crate) mod uniforms;

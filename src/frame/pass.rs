@@ -103,8 +103,8 @@ pub enum Stages {
 pub enum Over {
     /// An invocation a surfel.
     Surfels,
-    /// Workgroups that share the large splats.
-    LargeSplats,
+    /// An invocation for each surfel that there is room for, in all instances.
+    Slots,
     /// An invocation a pixel, for each part of a scene's surfels that one descriptor set names.
     PixelsOfSurfels,
     /// An invocation a segment.
@@ -119,7 +119,7 @@ pub enum Over {
     PixelsOfTriangles,
     /// An invocation a pixel.
     Pixels,
-    /// An invocation a tile.
+    /// A workgroup a tile.
     Tiles,
     /// Pixels of a pyramid's level, as the pass's steps say.
     Level,
@@ -148,11 +148,9 @@ impl Over {
     /// What descriptor set 0 is of.
     pub fn scope(self) -> Scope {
         match self {
-            Self::Surfels
-            | Self::LargeSplats
-            | Self::PixelsOfSurfels
-            | Self::SplatTriangles
-            | Self::Points => Scope::Surfels,
+            Self::Surfels | Self::Slots | Self::PixelsOfSurfels | Self::SplatTriangles | Self::Points => {
+                Scope::Surfels
+            }
             Self::Lines | Self::PixelsOfLines => Scope::Lines,
             Self::Triangles | Self::LargeTriangles | Self::PixelsOfTriangles => Scope::Triangles,
             Self::Pixels | Self::Tiles | Self::Level | Self::FullScreen => Scope::View,

@@ -3,6 +3,7 @@
 use super::methods::{Path, passes};
 use super::renderer::RenderOptions;
 use super::splat_buffers::SPLAT;
+use super::splat_list::{ATTRIBUTE_ROW, BOX};
 use super::targets::per_pixel;
 use super::variant::Variant;
 use crate::scene::Streams;
@@ -16,7 +17,7 @@ pub struct FramePlan {
     pub passes: Vec<&'static str>,
     /// The targets, each with the bytes of a pixel. Where a target has less than one value a pixel, that is a fraction.
     pub targets: Vec<(&'static str, f64)>,
-    /// Bytes of a splat, one a surfel; 0 where none are made.
+    /// Bytes of a splat with what belongs to it, one a surfel; 0 where none are made.
     pub splat: u64,
 }
 
@@ -34,7 +35,11 @@ impl FramePlan {
         let mut names: Vec<_> = passes.iter().map(|pass| pass.name).collect();
         // A pass may take several steps.
         names.dedup();
-        let splat = if variant.pull_push.is_some() { 0 } else { SPLAT };
+        let splat = match (variant.pull_push, variant.is_tiled()) {
+            (Some(_), _) => 0,
+            (None, false) => SPLAT,
+            (None, true) => SPLAT + BOX + ATTRIBUTE_ROW * variant.attribute_rows().max(1),
+        };
         Self { passes: names, targets: per_pixel(&variant), splat }
     }
 }

@@ -5,7 +5,6 @@ use super::renderer::RenderOptions;
 use super::targets::{coverage_fits, picture_fits};
 use crate::error::{Error, Result};
 use crate::scene::instance::Placed;
-use crate::settings::splatting::Visibility;
 use crate::settings::{Alpha, Settings};
 use crate::settings::{Precision, Rasterizer};
 use crate::vk::{Device, DeviceDescription};
@@ -18,21 +17,22 @@ pub(crate) fn width_of_sums(device: &Device, options: &RenderOptions, rasterizer
 
 /// [`width_of_sums`] where it is not known yet what is rendered.
 pub(crate) fn width_of_blended_sums(device: &Device, options: &RenderOptions) -> Precision {
-    let rasterizer = rasterizer_for(device, options, true, Alpha::Mask);
+    let rasterizer = rasterizer_for(device, options, Alpha::Mask, true);
     rasterizer.map_or(options.precision, |rasterizer| width_of_sums(device, options, rasterizer))
 }
 
-/// What visits the pixels of a frame of these settings: what is asked for, or what is faster on `device`.
+/// What visits the pixels of a frame of these settings: what is asked for, or what is faster on `device`. `splats_fit`: the splats of all scenes fit
+/// the buffers that shaders over tiles see.
 pub(crate) fn rasterizer_of(
     device: &Device,
     options: &RenderOptions,
     settings: &Settings,
     scenes: &[Placed<'_>],
+    splats_fit: bool,
 ) -> Result<Rasterizer> {
-    let blends = settings.splatting.visibility != Visibility::Nearest;
     match settings.pull_push {
         Some(_) => rasterizer_of_points(device, options, scenes),
-        None => rasterizer_for(device, options, blends, settings.alpha),
+        None => rasterizer_for(device, options, settings.alpha, splats_fit),
     }
 }
 
@@ -85,30 +85,29 @@ fn too_large(device: &Device, options: &RenderOptions) -> Error {
     ))
 }
 
-/// The faster of what `device` can do with these options, for frames that blend splats or do not.
+/// The faster of what `device` can do with these options.
 pub(crate) fn rasterizer_for(
     device: &Device,
     options: &RenderOptions,
-    blends: bool,
     alpha: Alpha,
+    splats_fit: bool,
 ) -> Result<Rasterizer> {
     let capabilities = device.capabilities();
     let fits = picture_fits(capabilities, options.outputs, options.size);
-    let (needed, atomics) = match blends {
-        true => ("float atomics", capabilities.float_atomics),
-        false => ("64-bit atomics", capabilities.int64_atomics),
-    };
-    let can_compute = atomics && options.precision == Precision::Full && fits;
+    let can_compute = options.precision == Precision::Full && fits && splats_fit;
     let covers = capabilities.fragment_writes && coverage_fits(capabilities, options.size);
     let can_draw = alpha == Alpha::Mask || covers;
     match options.rasterizer {
         Some(Rasterizer::Compute) if !can_compute => {
             let (name, most) = (&device.description().name, capabilities.max_storage_buffer_range);
-            let cause = match (atomics, fits) {
-                (false, _) => format!("{needed} in buffers, which {name} does not have"),
-                (true, false) => {
+            let cause = match (fits, splats_fit) {
+                (false, _) => {
                     format!("a picture within the {most} bytes of a buffer that shaders of {name} see")
                 }
+                (_, false) => format!(
+                    "the splats of all scenes within a buffer that shaders of {name} see: {most} bytes, or {} texels",
+                    capabilities.max_texels
+                ),
                 (true, true) => "32-bit sums, and half precision is wanted".into(),
             };
             Err(Error::Usage(format!("the compute rasterizer needs {cause}: choose the draw rasterizer")))
@@ -126,7 +125,7 @@ pub(crate) fn rasterizer_for(
         None if can_compute
             && (!can_draw
                 || device.description().kind == DeviceDescription::CPU
-                || blends && !capabilities.blend_float32) =>
+                || !capabilities.blend_float32) =>
         {
             Ok(Rasterizer::Compute)
         }

@@ -4,6 +4,7 @@ use super::pass::{Commands, Over, Pass, Programs, Steps};
 use super::pyramids::Pyramids;
 use super::resource::Resource;
 use super::scene_resources::{Run, SceneResources};
+use super::splat_list::SplatList;
 use super::targets::RenderTargets;
 use super::variant::{SceneVariant, Variant};
 use crate::vk::shaders::Module;
@@ -16,7 +17,7 @@ use std::sync::Arc;
 
 /// Invocations in a workgroup of every shader.
 const WORKGROUP: u64 = 64;
-/// Workgroups among which large splats, or large triangles, of the instances of a dispatch are dealt out.
+/// Workgroups among which large triangles of the instances of a dispatch are dealt out.
 const LARGE_WORKGROUPS: u32 = 256;
 /// Workgroups in a row of a dispatch over pixels; every device allows as many.
 const WORKGROUPS_X: u32 = 32_768;
@@ -40,6 +41,10 @@ pub struct Frame<'a> {
     pub view: &'a DescriptorSet,
     /// What passes draw to, and compute.
     pub targets: &'a RenderTargets,
+    /// The splats of all scenes, for tiles.
+    pub splats: Option<&'a SplatList>,
+    /// How many of them there are.
+    pub splat_count: u64,
     /// The instances of scenes for draws: in the order of the frame.
     pub runs: Vec<Run<'a>>,
     /// The same for dispatches, whose order does not matter: those of a batch together, as two dispatches must not write what one descriptor set names.
@@ -78,7 +83,10 @@ impl Prepared {
                 record(&Steps { pipeline: self.first(), targets: self.targets.as_ref(), frame }, rec);
             }
             Commands::Dispatches if there => {
-                self.dispatch(&mut rec.pass(self.pass.name, &frame.uses(&self.accesses)), frame);
+                for slice in 0..self.slices(frame) {
+                    let mut enc = rec.pass(self.pass.name, &frame.uses(&self.accesses));
+                    self.dispatch(&mut enc, frame, slice);
+                }
             }
             Commands::Draws(_) => {
                 let Some(framebuffer) = &self.framebuffer else { return };
@@ -86,6 +94,16 @@ impl Prepared {
                 self.draw(&mut enc.render(framebuffer), frame, &());
             }
             Commands::Dispatches => {}
+        }
+    }
+
+    /// How many dispatches over tiles follow each other, each with a slice of the splats; 1 of all other passes.
+    fn slices(&self, frame: &Frame<'_>) -> u32 {
+        let pipelines = self.pipelines.first().map_or(&[][..], |pipelines| pipelines);
+        let over_tiles = pipelines.iter().any(|(over, _)| *over == Over::Tiles);
+        match frame.splats {
+            Some(splats) if over_tiles && frame.variant.sliced => splats.slices(frame.splat_count),
+            _ => 1,
         }
     }
 
@@ -111,8 +129,8 @@ impl Prepared {
         all.flat_map(|(pipelines, run)| pipelines.iter().map(move |(over, made)| (*over, made, run)))
     }
 
-    /// Records a dispatch of each program.
-    fn dispatch(&self, enc: &mut Encoder<'_, '_>, frame: &Frame<'_>) {
+    /// Records a dispatch of each program; of one over tiles with a slice of the splats.
+    fn dispatch(&self, enc: &mut Encoder<'_, '_>, frame: &Frame<'_>, slice: u32) {
         for (over, pipeline, run) in self.each(&frame.batches) {
             let Pipeline::Compute(pipeline) = pipeline else { continue };
             let pyramid = frame.pyramid_of(self.pass);
@@ -120,19 +138,25 @@ impl Prepared {
                 [Some(first), self.targets.as_ref(), third].into_iter().flatten().collect()
             };
             let Some(run) = run else {
-                let workgroups = match over {
-                    Over::Tiles => row_over(frame.targets.tiles()),
-                    _ => grid_over(frame.targets.pixels()),
-                };
-                enc.dispatch(pipeline, &three(frame.view, pyramid), &(), workgroups);
+                let sets = three(frame.view, pyramid);
+                match (over, frame.splats) {
+                    (Over::Tiles, Some(splats)) => {
+                        let [columns, rows] = frame.targets.tiles();
+                        let hierarchy = splats.hierarchy(slice, self.slices(frame));
+                        enc.dispatch(pipeline, &sets, &hierarchy, [columns, rows, 1]);
+                    }
+                    _ => enc.dispatch(pipeline, &sets, &(), grid_over(frame.targets.pixels())),
+                }
                 continue;
             };
-            for part in run.parts(over.scope(), self.pass) {
+            for mut part in run.parts(over.scope(), self.pass) {
+                if over == Over::Slots {
+                    part.instances = part.room;
+                }
                 let [x, y, _] = match over {
                     Over::Surfels | Over::Lines | Over::Triangles => row_over(part.window.count.into()),
-                    Over::LargeSplats | Over::LargeTriangles => {
-                        [LARGE_WORKGROUPS.div_ceil(part.instances), 1, 1]
-                    }
+                    Over::Slots => row_over(part.window.room.into()),
+                    Over::LargeTriangles => [LARGE_WORKGROUPS.div_ceil(part.instances), 1, 1],
                     _ => grid_over(frame.targets.pixels()),
                 };
                 let sets = three(part.set, pyramid.or(part.counts));
@@ -164,9 +188,13 @@ impl<'a> Frame<'a> {
     pub fn uses(&self, accesses: &[(Resource, Access)]) -> Vec<Use> {
         let mut uses = Vec::new();
         for (resource, access) in accesses {
-            match resource.is_of_scene() {
-                true => uses.extend(self.of_scenes(*resource).map(|buffer| buffer.with(*access))),
-                false => self.targets.extend_uses(&mut uses, *resource, *access),
+            let of_splats = self.splats.and_then(|splats| splats.buffer(*resource));
+            match of_splats {
+                Some(buffer) => uses.push(buffer.with(*access)),
+                None if resource.is_of_scene() => {
+                    uses.extend(self.of_scenes(*resource).map(|buffer| buffer.with(*access)));
+                }
+                None => self.targets.extend_uses(&mut uses, *resource, *access),
             }
         }
         uses

@@ -32,6 +32,9 @@ pub struct RenderOptions {
     pub profile: bool,
     /// Count the splats by cull reason.
     pub count: bool,
+    /// Run visibility, attribute and normalize as passes of their own where one dispatch over tiles could be all three: to time them, or to
+    /// see what is between. The picture is the same, bit for bit.
+    pub split: bool,
 }
 
 /// What is known of a rendered frame.
@@ -131,7 +134,7 @@ impl Renderer {
 
     /// Memory of the splats of the last frame and what belongs to them, bytes.
     pub fn splat_bytes(&self) -> u64 {
-        self.frame.scenes().map(SceneResources::bytes).sum()
+        self.frame.splat_bytes()
     }
 
     /// Copies the splats of the last frame to the CPU: one a surfel, scene by scene; none if it was pull–push's.

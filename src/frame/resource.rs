@@ -3,25 +3,24 @@
 /// Buffers and images that passes hand on to each other. What is only read, such as positions, is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Resource {
-    /// Of a scene: a splat a surfel.
+    /// A splat a surfel: of a scene, or of all scenes of a frame one after the other, where they are for tiles.
     Splats,
-    /// Of a scene: indices of splats of many pixels.
-    LargeSplats,
-    /// Of a scene: clip lines on the screen.
+    /// For tiles: the pixels of each splat, and of the nodes of the hierarchy above them.
+    Boxes,
+    /// For tiles: what the sums take of each splat.
+    Attributes,
+    /// Clip lines on the screen, of a scene or a frame as splats are.
     ScreenClips,
     /// Of a scene: culled surfels by reason.
     Counts,
     /// Of a scene: indices of triangles of many pixels.
     LargeTriangles,
-    /// Depth key of the nearest surface, moved back by ε; 0 where there is none. Where the nearest splat is seen alone and computed, its number
-    /// is beside the key.
+    /// Depth key of the nearest surface, moved back by ε; 0 where there is none.
     Visibility,
     /// `(Σw, Σw a)`: `a` is the normal where normals are wanted, else the colour.
     Sums0,
     /// `(Σw κ, Σw rgb)`, where depth is wanted, or colour beside normals.
     Sums1,
-    /// Least visibility of each tile, empty pixels aside.
-    Tiles,
     /// The samples of each pixel that a surface covers, a bit each, where α is coverage.
     Coverage,
     /// Distance and number of the nearest point of each pixel.
@@ -52,14 +51,14 @@ impl Resource {
     pub fn name(self) -> &'static str {
         match self {
             Self::Splats => "splats",
-            Self::LargeSplats => "large splats",
+            Self::Boxes => "boxes",
+            Self::Attributes => "attributes",
             Self::ScreenClips => "screen clips",
             Self::Counts => "counts",
             Self::LargeTriangles => "large triangles",
             Self::Visibility => "visibility",
             Self::Sums0 => "sums0",
             Self::Sums1 => "sums1",
-            Self::Tiles => "tiles",
             Self::Coverage => "coverage",
             Self::Nearest => "nearest",
             Self::NearestDepth => "nearest_depth",
@@ -74,11 +73,16 @@ impl Resource {
         }
     }
 
-    /// Whether each scene has one of its own.
+    /// Whether each scene has one of its own, or its part of one.
     pub fn is_of_scene(self) -> bool {
         matches!(
             self,
-            Self::Splats | Self::LargeSplats | Self::ScreenClips | Self::Counts | Self::LargeTriangles
+            Self::Splats
+                | Self::Boxes
+                | Self::Attributes
+                | Self::ScreenClips
+                | Self::Counts
+                | Self::LargeTriangles
         )
     }
 }

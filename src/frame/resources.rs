@@ -7,7 +7,8 @@ use super::rasterizer::width_of_blended_sums;
 use super::recording::{Frame, Prepared};
 use super::renderer::RenderOptions;
 use super::scene_cache::SceneCache;
-use super::scene_resources::{Needs, Run, SceneResources};
+use super::scene_resources::{Needs, Run, SceneResources, batches_of};
+use super::splat_list::{Room, Share, SplatList, room_for, room_of};
 use super::targets::{HostBindings, RenderTargets, check_size};
 use super::uniforms::{self, Blocks};
 use super::variant::{SceneVariant, Variant};
@@ -32,6 +33,10 @@ pub struct FrameResources {
     scenes: SceneCache,
     /// Of each place of the present frame: its scene in the cache, and which of that one's places it is.
     places: Vec<[usize; 2]>,
+    /// The splats of the present frame, for tiles.
+    splats: Option<Arc<SplatList>>,
+    /// How many of them there are.
+    splat_count: u64,
     pipelines: Pipelines,
     view: Arc<Buffer>,
     options: RenderOptions,
@@ -59,6 +64,8 @@ pub struct Present {
     pub variant: Variant,
     /// Of the scenes for which the passes have pipelines.
     scenes: Vec<SceneVariant>,
+    /// The list of splats that the passes see.
+    splats: u64,
     passes: Vec<Prepared>,
     view: ViewSet,
     pub targets: RenderTargets,
@@ -96,6 +103,8 @@ impl FrameResources {
             previous: None,
             scenes: SceneCache::default(),
             places: Vec::new(),
+            splats: None,
+            splat_count: 0,
             pipelines: Pipelines::new(host),
             view: Arc::new(Buffer::uniform(device, "frame", uniforms::BYTES)?),
             options,
@@ -124,6 +133,13 @@ impl FrameResources {
     /// What is made of the scenes of the last frame, each once.
     pub fn scenes(&self) -> impl Iterator<Item = &SceneResources> + Clone {
         self.scenes.present()
+    }
+
+    /// Memory of the splats of the last frame and what belongs to them, bytes.
+    pub fn splat_bytes(&self) -> u64 {
+        let tiled = self.present.as_ref().is_some_and(|present| present.variant.is_tiled());
+        let of_frame = self.splats.as_ref().filter(|_| tiled).map_or(0, |splats| splats.bytes());
+        of_frame + self.scenes().map(SceneResources::bytes).sum::<u64>()
     }
 
     /// The places of the last frame, in their order: the number of the scene and which of its places it is.
@@ -251,7 +267,11 @@ impl FrameResources {
             }
         }
         let Present { variant, targets, view, .. } = present;
-        Some((present, Frame { variant, view: &view.set, targets, runs, batches }))
+        let splats = self.splats.as_deref().filter(|_| variant.is_tiled());
+        Some((
+            present,
+            Frame { variant, view: &view.set, targets, splats, splat_count: self.splat_count, runs, batches },
+        ))
     }
 
     /// Records the writing of a frame's numbers.
@@ -290,19 +310,32 @@ impl FrameResources {
             self.places.push([number, counts[number] as usize]);
             counts[number] += 1;
         }
-        let splats = variant.pull_push.is_none();
+        let splats = variant.pull_push.is_none() && !variant.is_tiled();
         let of_host = self.pipelines.has_host();
+        let shares = self.make_splats(&list, &counts, variant)?;
         let needs = |scene: usize| Needs {
-            rasterizer: splats.then_some(variant.rasterizer),
+            splats,
             moved: of_host && splats && variant.visibility == Visibility::Axis,
             instanced,
             instances: room_for(counts[scene]),
         };
-        let Self { scenes, retired, device, view, .. } = self;
-        let fits = |made: &SceneResources, scene: usize| made.needs().cover(&needs(scene));
+        let Self { scenes, retired, device, view, splats: splat_list, .. } = self;
+        let splat_list = splat_list.as_ref();
+        let fits = |made: &SceneResources, scene: usize| {
+            made.needs().cover(&needs(scene))
+                && match splat_list {
+                    Some(splats) if variant.is_tiled() => {
+                        made.needs() == &needs(scene)
+                            && made.share().is_some_and(|share| share.is(splats, shares[scene]))
+                    }
+                    _ => made.share().is_none(),
+                }
+        };
         let make = |scene: usize| {
             let variant = &frame.scenes[first_of[scene]];
-            SceneResources::new(device, list[scene], variant, needs(scene), view)
+            let share = splat_list.filter(|_| variant.frame.is_tiled());
+            let share = share.map(|splats| Share::new(splats, list[scene], shares[scene]));
+            SceneResources::new(device, list[scene], variant, needs(scene), view, share)
         };
         let updated = scenes.update(&list, fits, make, |gone| retired.take(Some(gone)));
         if updated.is_err() {
@@ -316,6 +349,26 @@ impl FrameResources {
             }
         }
         Ok(())
+    }
+
+    /// Makes the list of the splats of these scenes, each once, of which there are so many instances: where the share of each begins.
+    fn make_splats(&mut self, scenes: &[&Scene], instances: &[u64], variant: &Variant) -> Result<Vec<Room>> {
+        let mut room = Room::default();
+        let mut shares = Vec::new();
+        if !variant.is_tiled() {
+            return Ok(shares);
+        }
+        for (scene, instances) in scenes.iter().zip(instances) {
+            shares.push(room);
+            room = room.with(room_of(scene, &batches_of(&self.device, scene, room_for(*instances))));
+        }
+        self.splat_count = room.splats;
+        if !self.splats.as_ref().is_some_and(|splats| splats.fits(variant, room)) {
+            self.made += 1;
+            let made = SplatList::new(&self.device, variant, room, self.made, self.splats.as_deref())?;
+            self.retired.take(self.splats.replace(Arc::new(made)));
+        }
+        Ok(shares)
     }
 
     fn make_present(&mut self, scenes: &[Placed<'_>], variant: Variant, size: [u32; 2]) -> Result<()> {
@@ -343,6 +396,7 @@ impl FrameResources {
                 id: self.made,
                 variant,
                 scenes: Vec::new(),
+                splats: 0,
                 passes: Vec::new(),
                 view: ViewSet::new(&self.device, &self.view, &variant, with_lookups)?,
                 targets,
@@ -362,16 +416,24 @@ impl FrameResources {
 
     /// Makes the pipelines of the present passes for such scenes, if they are others than before.
     fn make_passes(&mut self, scenes: &[SceneVariant], of_host: HostBindings<'_>) -> Result<()> {
-        let Self { present: Some(present), pipelines, device, .. } = self else { return Ok(()) };
-        if !present.passes.is_empty() && present.scenes == scenes {
+        let Self { present: Some(present), pipelines, device, splats, .. } = self else { return Ok(()) };
+        let splats = splats.as_ref().filter(|_| present.variant.is_tiled());
+        let splats_id = splats.map_or(0, |splats| splats.id);
+        let of_splats = present.splats == splats_id;
+        if !present.passes.is_empty() && present.scenes == scenes && of_splats {
             return Ok(());
         }
+        let beside: Vec<_> = match splats {
+            Some(splats) => of_host.iter().copied().chain(splats.bindings(&present.variant)).collect(),
+            None => of_host.to_vec(),
+        };
         let list = pipelines.passes(&present.variant, scenes.len());
-        let same = list.len() == present.passes.len()
+        let same = of_splats
+            && list.len() == present.passes.len()
             && list.iter().zip(&present.passes).all(|(pass, prepared)| std::ptr::eq(*pass, prepared.pass));
         // All is made before any of it is exchanged: after an error the passes are those of the scenes before.
         let fresh =
-            list.iter().filter(|_| !same).map(|pass| prepared(device, pass, pipelines, present, of_host));
+            list.iter().filter(|_| !same).map(|pass| prepared(device, pass, pipelines, present, &beside));
         let fresh = fresh.collect::<Result<Vec<_>>>()?;
         let made = list.iter().map(|pass| pipelines.of(device, pass, &present.variant, scenes));
         let made = made.collect::<Result<Vec<_>>>()?;
@@ -384,14 +446,9 @@ impl FrameResources {
             prepared.pipelines = made;
         }
         present.scenes = scenes.to_vec();
+        present.splats = splats_id;
         Ok(())
     }
-}
-
-/// Instances for which room is made, so that a scene is not made anew each time there is one more: an eighth more at most, or a quarter just beyond
-/// a power of two.
-fn room_for(instances: u64) -> u64 {
-    instances.next_multiple_of((instances.next_power_of_two() / 8).max(1))
 }
 
 impl Present {

@@ -4,11 +4,11 @@ use super::pass::{Pass, Scope};
 use super::passes::{footprint, visibility};
 use super::resource::Resource;
 use super::splat_buffers::{ALIGNMENT, Batches, LIST_HEADER, SPLAT, SplatBuffers};
+use super::splat_list::{Share, slots};
 use super::uniforms::{self, VIEW};
 use super::variant::SceneVariant;
 use crate::error::Result;
 use crate::scene::{Elements, Scene};
-use crate::settings::Rasterizer;
 use crate::vk::shaders::layout::{Counts, Splat, Window};
 use crate::vk::shaders::{self, resource};
 use crate::vk::{Binding, Buffer, Commands, DescriptorSet, Device, Encoder, Recorder};
@@ -22,6 +22,8 @@ pub struct SceneResources {
     /// Of the counts of each part, where they are counted: descriptor set 2 of what counts.
     count_sets: Vec<DescriptorSet>,
     splats: Option<SplatBuffers>,
+    /// Its share of the splats of the frame, for tiles.
+    share: Option<Share>,
     /// Those of discs moved away by ε, where they are wanted beside.
     moved: Option<SplatBuffers>,
     /// Culled surfels by reason, of each part.
@@ -46,8 +48,8 @@ pub struct SceneResources {
 /// What a frame needs of a scene beside its variant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Needs {
-    /// What splats are made for; `None` makes none.
-    pub rasterizer: Option<Rasterizer>,
+    /// Splats are made for draws.
+    pub splats: bool,
     /// Splats of moved discs are kept beside the others.
     pub moved: bool,
     /// Each instance has the camera in its own axes.
@@ -88,12 +90,14 @@ pub struct Part<'a> {
     /// The push constants of `lib/instance.glsl`.
     pub window: Window,
     pub instances: u32,
+    /// Instances that there is room for in the batch.
+    pub room: u32,
 }
 
 impl Needs {
     /// Whether what was made for these does for `others`, too.
     pub fn cover(&self, others: &Self) -> bool {
-        let same = |needs: &Self| (needs.rasterizer, needs.moved, needs.instanced);
+        let same = |needs: &Self| (needs.splats, needs.moved, needs.instanced);
         let enough = others.instances..=4 * others.instances;
         same(self) == same(others) && enough.contains(&self.instances)
     }
@@ -107,17 +111,16 @@ impl SceneResources {
         variant: &SceneVariant,
         needs: Needs,
         view: &Buffer,
+        share: Option<Share>,
     ) -> Result<Self> {
         let kinds = scene.primitives.as_ref();
         let of = |elements: &Elements| [elements.count, elements.first];
         let triangles = kinds.and_then(|kinds| kinds.triangles.as_ref()).map(of);
         let listed = triangles.map_or(0, |[count, _]| u64::from(count));
-        let bytes = (scene.capacity() * SPLAT).max(4 * listed);
-        let range = device.capabilities().max_storage_buffer_range - LIST_HEADER;
-        let batches = Batches::new(needs.instances, scene.chunks().len(), bytes, range);
+        let batches = batches_of(device, scene, needs.instances);
         let splats = |wanted: bool| {
-            let rasterizer = needs.rasterizer.filter(|_| wanted);
-            rasterizer.map(|rasterizer| SplatBuffers::new(device, scene, rasterizer, batches)).transpose()
+            let wanted = wanted && needs.splats;
+            wanted.then(|| SplatBuffers::new(device, scene, batches)).transpose()
         };
         let list = |_| {
             let bytes = batches.count() * batches.stride(LIST_HEADER, 4 * listed);
@@ -129,6 +132,7 @@ impl SceneResources {
             sets: Sets::default(),
             count_sets: Vec::new(),
             splats: splats(true)?,
+            share,
             moved: splats(needs.moved)?,
             counts: None,
             large_triangles: triangles.map(list).transpose()?,
@@ -148,6 +152,11 @@ impl SceneResources {
     /// What it was made for.
     pub fn needs(&self) -> &Needs {
         &self.needs
+    }
+
+    /// Its share of the splats of the frame, for tiles.
+    pub fn share(&self) -> Option<&Share> {
+        self.share.as_ref()
     }
 
     /// Frames from now on are of the first `count` surfels of so many instances.
@@ -192,6 +201,8 @@ impl SceneResources {
             let mut there = scene.bindings(number);
             there.extend(blocks(batch));
             there.extend(buffers.into_iter().flat_map(|splats| splats.bindings(scene, batch, number)));
+            let share = self.share.as_ref().filter(|_| buffers.is_none());
+            there.extend(share.into_iter().flat_map(|share| share.bindings(scene, batches, batch, number)));
             wanted_set(device, &of_surfels, there)
         };
         let every = |buffers: Option<&SplatBuffers>| {
@@ -228,7 +239,6 @@ impl SceneResources {
         let both = [&self.splats, &self.moved].into_iter().flatten();
         let of_splats = both.filter_map(move |splats| match resource {
             Resource::Splats => Some(&splats.splats),
-            Resource::LargeSplats => splats.large.as_ref(),
             Resource::ScreenClips => splats.screen_clips.as_ref(),
             _ => None,
         });
@@ -244,13 +254,6 @@ impl SceneResources {
     pub fn clear(&self, enc: &mut Encoder<'_, '_>, resource: Resource) {
         let batches = self.present_batches();
         match resource {
-            Resource::LargeSplats => {
-                for splats in [&self.splats, &self.moved].into_iter().flatten() {
-                    let Some(lists) = &splats.large else { continue };
-                    let starts = batches.clone().flat_map(|batch| splats.list_starts(batch, &self.parts));
-                    starts.for_each(|start| enc.zero_range(lists, start, LIST_HEADER));
-                }
-            }
             Resource::LargeTriangles => {
                 let Some(lists) = &self.large_triangles else { return };
                 let starts = batches.map(|batch| batch * self.triangle_stride());
@@ -301,13 +304,19 @@ impl SceneResources {
     /// Copies the splats of the last frame, one a surfel, to the CPU, instance by instance.
     pub fn read(&self, device: &Arc<Device>) -> Result<Vec<Vec<Splat>>> {
         let (size, capacity) = (self.count * SPLAT, self.parts.last().map_or(0, |part| part.end));
-        let Some(made) = self.splats.as_ref().filter(|_| size > 0) else {
+        let of_draws = self.splats.as_ref().map(|made| &made.splats);
+        let of_frame = self.share.as_ref().and_then(|share| share.list.buffer(Resource::Splats));
+        let Some(made) = of_draws.or(of_frame).filter(|_| size > 0) else {
             return Ok(vec![Vec::new(); self.instances as usize]);
         };
-        let target = Buffer::readback(device, "read splats", made.splats.size())?;
-        Commands::new(device, false)?.run(|rec| copy_to_host(rec, &made.splats, &target))?;
+        let target = Buffer::readback(device, "read splats", made.size())?;
+        Commands::new(device, false)?.run(|rec| copy_to_host(rec, made, &target))?;
         let of_instance = |instance: u64| {
-            let start = made.splats_start(instance, capacity) as usize;
+            let start = match (&self.splats, &self.share) {
+                (Some(made), _) => made.splats_start(instance, capacity),
+                (None, Some(share)) => SPLAT * share.first_splat(capacity, &self.batches, instance),
+                (None, None) => 0,
+            } as usize;
             bytemuck::pod_collect_to_vec(&target.bytes()[start..start + size as usize])
         };
         Ok((0..self.instances).map(of_instance).collect())
@@ -317,6 +326,15 @@ impl SceneResources {
     pub fn counts_size(&self) -> u64 {
         self.counts.as_ref().map_or(0, Buffer::size)
     }
+}
+
+/// The batches of so many instances of a scene.
+pub fn batches_of(device: &Device, scene: &Scene, instances: u64) -> Batches {
+    let triangles = scene.primitives.as_ref().and_then(|kinds| kinds.triangles.as_ref());
+    let listed = triangles.map_or(0, |triangles| u64::from(triangles.count));
+    let bytes = (slots(scene.capacity()) * SPLAT).max(4 * listed);
+    let range = device.capabilities().max_storage_buffer_range - LIST_HEADER;
+    Batches::new(instances, scene.chunks().len(), bytes, range)
 }
 
 /// A descriptor set of what is wanted of what is there.
@@ -369,6 +387,9 @@ impl<'a> Run<'a> {
     }
 
     fn surfels(&self, pass: &Pass) -> impl Iterator<Item = Part<'a>> {
+        let present = (self.first + self.count
+            - self.scene.batches.range(self.scene.batches.of(self.first)[0]).start)
+            as u32;
         let (scene, [batch, instance]) = (self.scene, self.scene.batches.of(self.first));
         let moved = [&raw const footprint::MOVED, &raw const visibility::DRAWN].contains(&&raw const *pass);
         let sets = if moved && scene.moved.is_some() { &scene.sets.moved } else { &scene.sets.surfels };
@@ -376,15 +397,25 @@ impl<'a> Run<'a> {
         let sets = &sets[parts * batch as usize..parts * (batch as usize + 1)];
         let instances = self.count as u32;
         sets.iter().zip(&scene.parts).enumerate().map(move |(number, (set, part))| {
-            let room = part.end - part.start;
+            let own = part.end - part.start;
+            let room = scene.share.as_ref().map_or(own, |_| slots(own));
             let window = Window {
-                count: scene.count.saturating_sub(part.start).min(room) as u32,
+                count: scene.count.saturating_sub(part.start).min(own) as u32,
                 first: part.start as u32,
+                capacity: own as u32,
                 room: room as u32,
                 clips: scene.clips.get(number).copied().unwrap_or_default(),
                 instance: instance as u32,
+                first_clip: scene
+                    .share
+                    .as_ref()
+                    .map_or(0, |share| share.first_clip(&scene.batches, batch, number))
+                    as u32,
+                attribute_rows: scene.share.as_ref().map_or(0, |share| share.list.rows()) as u32,
+                present,
             };
-            Part { set, counts: scene.count_sets.get(number), window, instances }
+            let room = scene.batches.len(batch) as u32;
+            Part { set, counts: scene.count_sets.get(number), window, instances, room }
         })
     }
 
@@ -397,7 +428,19 @@ impl<'a> Run<'a> {
         let [batch, instance] = self.scene.batches.of(self.first);
         let [count, first] = self.scene.elements[kind]?;
         let set = self.scene.sets.elements[kind].get(batch as usize)?;
-        let window = Window { count, first, room: count, clips: 0, instance: instance as u32 };
-        Some(Part { set, counts: None, window, instances: self.count as u32 })
+        let instance = instance as u32;
+        let window = Window {
+            count,
+            first,
+            capacity: count,
+            room: count,
+            clips: 0,
+            instance,
+            first_clip: 0,
+            attribute_rows: 0,
+            present: 0,
+        };
+        let instances = self.count as u32;
+        Some(Part { set, counts: None, window, instances, room: instances })
     }
 }

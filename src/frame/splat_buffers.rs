@@ -1,8 +1,7 @@
-//! Splats of all instances of a scene, and what is made with them: where each batch of instances has its own.
+//! Splats of all instances of a scene, for draws: where each batch of instances has its own.
 
 use crate::error::Result;
 use crate::scene::Scene;
-use crate::settings::Rasterizer;
 use crate::vk::shaders::layout::{ScreenClip, Splat, View, Views};
 use crate::vk::shaders::{self, resource};
 use crate::vk::{Binding, Buffer, Device};
@@ -32,8 +31,6 @@ pub struct Batches {
 /// Splats of all instances, and what is made with them.
 pub struct SplatBuffers {
     pub splats: Buffer,
-    /// Numbers of splats of many pixels, a list an instance of each part; only for the compute rasterizer.
-    pub large: Option<Buffer>,
     /// A [`ScreenClip`] a clip; only of a scene that has clips.
     pub screen_clips: Option<Buffer>,
     batches: Batches,
@@ -74,19 +71,12 @@ impl Batches {
 }
 
 impl SplatBuffers {
-    pub fn new(
-        device: &Arc<Device>,
-        scene: &Scene,
-        rasterizer: Rasterizer,
-        batches: Batches,
-    ) -> Result<Self> {
+    pub fn new(device: &Arc<Device>, scene: &Scene, batches: Batches) -> Result<Self> {
         let buffer =
             |name, stride: u64| Buffer::storage(device, name, (batches.count() * stride).max(ALIGNMENT));
-        let lists = || buffer("large splats", list_stride(scene, &batches));
         let clips = scene.clip_chunks().map(|_| buffer("screen clips", clip_stride(scene, &batches)));
         Ok(Self {
             splats: buffer("splats", splat_stride(scene.capacity(), &batches))?,
-            large: (rasterizer == Rasterizer::Compute).then(lists).transpose()?,
             screen_clips: clips.transpose()?,
             batches,
         })
@@ -94,11 +84,10 @@ impl SplatBuffers {
 
     /// Memory, bytes.
     pub fn bytes(&self) -> u64 {
-        let optional = [&self.large, &self.screen_clips].map(|made| made.as_ref().map_or(0, Buffer::size));
-        self.splats.size() + optional.iter().sum::<u64>()
+        self.splats.size() + self.screen_clips.as_ref().map_or(0, Buffer::size)
     }
 
-    /// Splats, lists and screen clips of a part of the scene in a batch of instances.
+    /// Splats and screen clips of a part of the scene in a batch of instances.
     pub fn bindings(
         &self,
         scene: &Scene,
@@ -110,11 +99,6 @@ impl SplatBuffers {
         let start = batch * splat_stride(scene.capacity(), batches) + part.start * SPLAT;
         let bytes = instances * count * SPLAT;
         let mut list = vec![(&resource::SPLATS, Binding::Storage(&self.splats, start, bytes))];
-        if let Some(large) = &self.large {
-            let start = batch * list_stride(scene, batches) + lists_start(part, number);
-            let bytes = LIST_HEADER + instances * 4 * count;
-            list.push((&resource::LARGE_SPLATS, Binding::Storage(large, start, bytes)));
-        }
         if let Some(clips) = &self.screen_clips {
             let starts = clip_starts(scene);
             let start = batch * clip_stride(scene, batches) + starts[number];
@@ -122,13 +106,6 @@ impl SplatBuffers {
             list.push((&resource::SCREEN_CLIPS, Binding::Storage(clips, start, bytes)));
         }
         list
-    }
-
-    /// Where the lengths of the lists of large splats of a batch begin, bytes, for each of these parts.
-    pub fn list_starts(&self, batch: u64, parts: &[Range<u64>]) -> impl Iterator<Item = u64> {
-        let capacity = parts.last().map_or(0, |part| part.end);
-        let start = batch * lists_stride(parts.len() as u64, capacity, &self.batches);
-        parts.iter().enumerate().map(move |(number, part)| start + lists_start(part, number))
     }
 
     /// Where the splats of an instance begin, bytes, in a scene that has room for so many.
@@ -142,25 +119,12 @@ fn splat_stride(capacity: u64, batches: &Batches) -> u64 {
     batches.stride(0, capacity * SPLAT)
 }
 
-fn list_stride(scene: &Scene, batches: &Batches) -> u64 {
-    lists_stride(scene.chunks().len() as u64, scene.capacity(), batches)
-}
-
-fn lists_stride(parts: u64, capacity: u64, batches: &Batches) -> u64 {
-    batches.stride(parts * LIST_HEADER, 4 * capacity)
-}
-
-/// Where the lists of a part begin in those of a batch, bytes.
-fn lists_start(part: &Range<u64>, number: usize) -> u64 {
-    number as u64 * LIST_HEADER + 4 * part.start
-}
-
 fn clip_stride(scene: &Scene, batches: &Batches) -> u64 {
     batches.stride(0, clip_starts(scene).last().copied().unwrap_or_default())
 }
 
 /// Where the screen clips of each part begin, and where the last ends, bytes.
-fn clip_starts(scene: &Scene) -> Vec<u64> {
+pub fn clip_starts(scene: &Scene) -> Vec<u64> {
     let bytes = |clips: u64| (clips * size_of::<ScreenClip>() as u64).max(1).next_multiple_of(ALIGNMENT);
     let mut starts = vec![0];
     for clips in scene.clip_chunks().unwrap_or_default() {

@@ -15,8 +15,8 @@ use crate::vk::{
 use ash::vk::Format;
 use std::sync::Arc;
 
-/// Side of a tile, px; as in `lib/pixels.glsl`.
-const TILE: u32 = 8;
+/// Side of a tile, px: TILE of `lib/tile.glsl`.
+pub const TILE: u32 = 8;
 
 /// What a target of a frame is.
 #[derive(Clone, Copy, Debug)]
@@ -36,8 +36,6 @@ pub enum Kind {
     Image(ImageUse),
     /// A buffer of so many bytes a pixel, row by row from the top left.
     Pixels(u64),
-    /// A buffer of a word a tile.
-    Tiles,
 }
 
 /// The targets of a frame.
@@ -78,27 +76,31 @@ impl Resource {
     /// Whether shaders see it as that.
     pub fn is_seen_as(self, shader: &shaders::Resource) -> bool {
         let known: &[&shaders::Resource] = match self {
-            Self::Splats => &[&resource::SPLATS],
-            Self::LargeSplats => &[&resource::LARGE_SPLATS],
-            Self::ScreenClips => &[&resource::SCREEN_CLIPS],
+            Self::Splats => &[
+                &resource::SPLATS,
+                &resource::SPLAT_LAYOUT,
+                &resource::FRAME_SPLATS,
+                &resource::SPLAT_TEXELS,
+            ],
+            Self::Boxes => &[&resource::SPLAT_BOXES, &resource::BOXES, &resource::BOX_TEXELS],
+            Self::Attributes => {
+                &[&resource::SPLAT_ATTRIBUTES, &resource::FRAME_ATTRIBUTES, &resource::ATTRIBUTE_TEXELS]
+            }
+            Self::ScreenClips => &[&resource::SCREEN_CLIPS, &resource::FRAME_CLIPS],
             Self::Counts => &[&resource::COUNTS],
             Self::LargeTriangles => &[&resource::LARGE_TRIANGLES],
-            Self::Visibility => &[
-                &resource::VISIBILITY,
-                &resource::WINNERS,
-                &resource::VISIBILITY_IMAGE,
-                &resource::VISIBILITY_INPUT,
-            ],
+            Self::Visibility => {
+                &[&resource::VISIBILITY, &resource::VISIBILITY_IMAGE, &resource::VISIBILITY_INPUT]
+            }
             Self::Sums0 => &[&resource::SUMS0, &resource::SUMS0_IMAGE, &resource::SUMS0_INPUT],
             Self::Sums1 => &[&resource::SUMS1, &resource::SUMS1_IMAGE, &resource::SUMS1_INPUT],
-            Self::Tiles => &[&resource::TILES],
             Self::Coverage => &[&resource::COVERAGE],
             Self::Nearest => &[&resource::NEAREST],
             Self::NearestDepth => &[&resource::NEAREST_DEPTH],
             Self::NearestNumber => &[&resource::NEAREST_NUMBER],
             Self::Pulled => &[&resource::TO_DEPTHS],
             Self::Pushed => &[&resource::FINAL_DEPTHS],
-            Self::Picture => &[&resource::PICTURE],
+            Self::Picture => &[&resource::PICTURE, &resource::PICTURE_COLOURS],
             Self::HostDepth => &[&resource::HOST_DEPTH],
             Self::Image | Self::Normal | Self::Depth => &[],
         };
@@ -174,26 +176,23 @@ fn drawn(variant: &Variant) -> Vec<Option<Description>> {
 }
 
 fn computed(variant: &Variant) -> Vec<Option<Description>> {
-    let nearest = variant.visibility == Visibility::Nearest;
-    let visibility = match nearest {
-        true => pixels(Resource::Visibility, Format::R64_UINT, 8, &resource::WINNERS),
-        false => pixels(Resource::Visibility, Format::R32_UINT, 4, &resource::VISIBILITY),
-    };
+    if !variant.split && !variant.sliced {
+        return vec![Some(picture(variant.outputs))];
+    }
+    let visibility = pixels(Resource::Visibility, Format::R32_UINT, 4, &resource::VISIBILITY);
+    if variant.visibility == Visibility::Nearest {
+        // What the dispatches of the nearest pass leave each other: depths and numbers of splats.
+        let winners = pixels(Resource::Sums0, Format::R32_UINT, 4, &resource::SUMS0);
+        return vec![Some(visibility), Some(winners), coverage(variant), Some(picture(variant.outputs))];
+    }
     let sums = |resource, wide: bool, shader| {
         let format = sums_format(Precision::Full, wide);
         pixels(resource, format, pixel_bytes(format), shader)
-    };
-    let tiles = Description {
-        resource: Resource::Tiles,
-        format: Format::R32_UINT,
-        kind: Kind::Tiles,
-        shader: Some(&resource::TILES),
     };
     vec![
         Some(visibility),
         Some(sums(Resource::Sums0, variant.wide_sums0(), &resource::SUMS0)),
         variant.has_sums1().then(|| sums(Resource::Sums1, variant.wide_sums1(), &resource::SUMS1)),
-        (!nearest).then_some(tiles),
         coverage(variant),
         Some(picture(variant.outputs)),
     ]
@@ -214,7 +213,19 @@ fn of_points(variant: &Variant) -> Vec<Option<Description>> {
 
 /// What shaders see of the targets of a frame: descriptor set 1.
 pub fn shader_resources(variant: &Variant) -> Vec<&'static shaders::Resource> {
-    describe(variant).iter().filter_map(|target| target.shader).collect()
+    let of_targets = describe(variant);
+    let of_splats = if variant.is_tiled() { splat_resources(variant) } else { Vec::new() };
+    of_targets.iter().filter_map(|target| target.shader).chain(of_splats).collect()
+}
+
+/// What passes over tiles see of the splats of a frame.
+fn splat_resources(variant: &Variant) -> Vec<&'static shaders::Resource> {
+    let clips = variant.clips.then_some(&resource::FRAME_CLIPS);
+    let (of_splats, attributes) = match variant.team.subgroups {
+        true => (&[&resource::BOX_TEXELS, &resource::SPLAT_TEXELS][..], &resource::ATTRIBUTE_TEXELS),
+        false => (&[&resource::FRAME_SPLATS][..], &resource::FRAME_ATTRIBUTES),
+    };
+    of_splats.iter().copied().chain([&resource::BOXES, attributes]).chain(clips).collect()
 }
 
 /// What the targets of a frame take.
@@ -222,7 +233,6 @@ pub fn per_pixel(variant: &Variant) -> PerPixel {
     let bytes = |target: &Description| match target.kind {
         Kind::Image(_) => pixel_bytes(target.format) as f64,
         Kind::Pixels(bytes) => bytes as f64,
-        Kind::Tiles => 4.0 / f64::from(TILE * TILE),
     };
     let mut list: PerPixel =
         describe(variant).iter().map(|target| (target.resource.name(), bytes(target))).collect();
@@ -274,7 +284,6 @@ impl RenderTargets {
                 Kind::Pixels(bytes) => {
                     Memory::Buffer(Buffer::storage(device, name, bytes * pixels_of(size))?)
                 }
-                Kind::Tiles => Memory::Buffer(Buffer::storage(device, name, 4 * tiles_of(size))?),
             };
             Ok((target, memory))
         };
@@ -368,9 +377,9 @@ impl RenderTargets {
         pixels_of(self.size)
     }
 
-    /// Number of tiles.
-    pub fn tiles(&self) -> u64 {
-        tiles_of(self.size)
+    /// Columns and rows of tiles.
+    pub fn tiles(&self) -> [u32; 2] {
+        self.size.map(|side| side.div_ceil(TILE))
     }
 
     /// Every target that there is.
@@ -389,11 +398,6 @@ impl RenderTargets {
         }
         list
     }
-}
-
-fn tiles_of(size: [u32; 2]) -> u64 {
-    let [x, y] = size.map(|side| u64::from(side.div_ceil(TILE)));
-    x * y
 }
 
 impl Targets {

@@ -61,6 +61,40 @@ pub struct Variant {
     pub precision: Precision,
     /// What visits the pixels of splats and points; lines and triangles are always computed.
     pub rasterizer: Rasterizer,
+    /// For tiles: visibility, attribute and normalize are passes of their own.
+    pub split: bool,
+    /// For tiles: their splats are taken in several dispatches, as more may be on a tile than one dispatch takes.
+    pub sliced: bool,
+    /// For tiles: some discs end at clip lines.
+    pub clips: bool,
+    /// For tiles: some normalization weights are at the corners of surfels' squares.
+    pub corners: bool,
+    /// Who rasterizes a tile.
+    pub team: Team,
+}
+
+/// The invocations that rasterize a tile together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Team {
+    /// How many they are: a power of two from 8 to 64.
+    pub lanes: u32,
+    /// They are a subgroup; otherwise they pass values on by shared memory.
+    pub subgroups: bool,
+}
+
+impl Team {
+    /// The team of devices whose subgroups have so many invocations that can shuffle.
+    pub fn of(subgroup_size: u32) -> Self {
+        let fits = (8..=64).contains(&subgroup_size) && subgroup_size.is_power_of_two();
+        if fits { Self { lanes: subgroup_size, subgroups: true } } else { Self::default() }
+    }
+}
+
+impl Default for Team {
+    /// What every device has.
+    fn default() -> Self {
+        Self { lanes: 8, subgroups: false }
+    }
 }
 
 /// The key of the pipelines that visit a scene's own surfels, lines and triangles: what it has and what the frame wants of it.
@@ -131,6 +165,8 @@ impl Variant {
         let undivided = normalization != Normalization::Pixel && splatting.visibility != Visibility::Nearest;
         let coloured = held.iter().any(|colours| *colours != ColourStream::None);
         let floats = [ColourStream::Linear, ColourStream::Textured, ColourStream::Half];
+        let tiled = settings.pull_push.is_none() && rasterizer == Rasterizer::Compute;
+        let weights = splatting.normalization == Normalization::Surfel && shading != Shading::Overlap;
         let lit_pixels = shading == Shading::Lit && !shade_splats;
         Self {
             perspective,
@@ -140,7 +176,7 @@ impl Variant {
             visibility: splatting.visibility,
             pull_push: settings.pull_push,
             normalization,
-            weights: splatting.normalization == Normalization::Surfel && shading != Shading::Overlap,
+            weights,
             shade_splats,
             widen_small: settings.widen == Widen::Small && splatting.filter != Filter::None,
             count: options.count,
@@ -159,7 +195,30 @@ impl Variant {
             outputs: options.outputs,
             precision: options.precision,
             rasterizer,
+            split: tiled && (options.split || splatting.visibility == Visibility::Axis),
+            sliced: false,
+            clips: tiled && streams.iter().any(|streams| streams.clips),
+            corners: tiled && weights && streams.iter().any(|streams| streams.weights == Some(true)),
+            team: Team::default(),
         }
+    }
+
+    /// The same with splats that crowd on the picture, or not.
+    pub fn crowded(self, crowded: bool) -> Self {
+        let sliced = crowded && self.is_tiled();
+        Self { sliced, split: self.split || sliced, ..self }
+    }
+
+    /// Whether splats are rasterized by tiles.
+    pub fn is_tiled(&self) -> bool {
+        self.pull_push.is_none() && self.rasterizer == Rasterizer::Compute
+    }
+
+    /// Rows of four words that a splat has beside, for tiles: `lib/attributes.glsl`.
+    pub fn attribute_rows(&self) -> u64 {
+        u64::from(self.wide_sums0() || self.weights)
+            + u64::from(self.wide_sums1())
+            + 2 * u64::from(self.corners)
     }
 
     /// Whether pull–push draws surfels as points.
@@ -220,7 +279,6 @@ impl Variant {
             .with(constant::CONFETTI, self.confetti)
             .with(constant::NORMALIZATION, self.normalization as u32)
             .with(constant::SHADE_SPLATS, self.shade_splats)
-            .with(constant::NEAREST, self.visibility == Visibility::Nearest)
             .with(constant::PAPER, self.pull_push.is_some_and(|pull_push| pull_push.rules == Rules::Paper))
             .with(
                 constant::PING_PONG,
@@ -238,7 +296,11 @@ impl Variant {
             .with(constant::LIGHTS, self.lights)
             .with(constant::OUT_NORMAL, self.outputs.normal)
             .with(constant::OUT_DEPTH, self.outputs.depth)
-            .with(constant::LIST_LARGE, self.rasterizer == Rasterizer::Compute)
+            .with(constant::CLIPS, self.clips)
+            .with(constant::BEYOND_CLIPS, self.coverage && self.clips)
+            .with(constant::SLICED, self.sliced)
+            .with(constant::FRAME_WEIGHTS, self.weights)
+            .with(constant::FRAME_CORNERS, self.corners)
     }
 }
 
@@ -293,7 +355,8 @@ impl SceneVariant {
                 (&resource::CLIPS, clips),
                 (&resource::SCREEN_CLIPS, clips),
                 (&resource::SPLATS, splats),
-                (&resource::LARGE_SPLATS, splats && frame.rasterizer == Rasterizer::Compute),
+                (&resource::SPLAT_BOXES, frame.is_tiled()),
+                (&resource::SPLAT_ATTRIBUTES, frame.is_tiled()),
             ],
             Scope::Lines | Scope::Triangles => &[
                 (&resource::VERTICES, true),

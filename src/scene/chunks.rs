@@ -30,11 +30,12 @@ mod tests {
     fn chunks_cover_every_surfel_once_and_fit() {
         let capabilities = Capabilities {
             blend_float32: true,
-            float_atomics: true,
             int64_atomics: true,
             fragment_writes: true,
             independent_blend: true,
             timestamps: None,
+            subgroup_size: 0,
+            max_texels: 65_536,
             max_storage_buffer_range: 1 << 20,
             storage_buffer_alignment: 64,
             max_image_side: 4096,

@@ -24,6 +24,13 @@ impl Buffer {
         Self::new(device, name, size, usage, Location::Device)
     }
 
+    /// As [`Buffer::storage`], for a [`TexelView`], too.
+    pub fn texels(device: &Arc<Device>, name: &str, size: u64) -> Result<Self> {
+        use vk::BufferUsageFlags as Usage;
+        let usage = Usage::STORAGE_BUFFER | Usage::TRANSFER_DST | Usage::TRANSFER_SRC;
+        Self::new(device, name, size, usage | Usage::UNIFORM_TEXEL_BUFFER, Location::Device)
+    }
+
     /// A uniform buffer, written by [`super::Recorder::update`].
     pub fn uniform(device: &Arc<Device>, name: &str, size: u64) -> Result<Self> {
         let usage = vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
@@ -116,6 +123,37 @@ impl Buffer {
         let mapped = self.allocation.as_mut().map_or(&mut [][..], Allocation::mapped_mut);
         let end = mapped.len().min(size);
         &mut mapped[..end]
+    }
+}
+
+/// A buffer as texels of four words.
+pub struct TexelView {
+    pub(super) raw: vk::BufferView,
+    device: Arc<Device>,
+}
+
+impl TexelView {
+    /// Bytes of a texel.
+    pub const TEXEL: u64 = 16;
+
+    /// All of a buffer of [`Buffer::texels`], which must outlive it and have no more texels than [`super::Capabilities::max_texels`].
+    pub fn new(buffer: &Buffer) -> Result<Self> {
+        let device = &buffer.device;
+        let info = vk::BufferViewCreateInfo::default()
+            .buffer(buffer.raw)
+            .format(vk::Format::R32G32B32A32_UINT)
+            .range(buffer.size / Self::TEXEL * Self::TEXEL);
+        // SAFETY: the buffer is alive, of this use, and every device has this format; the view is destroyed in `drop`.
+        let raw = unsafe { device.raw.create_buffer_view(&info, None) };
+        let raw = raw.map_err(Error::vulkan("vkCreateBufferView"))?;
+        Ok(Self { raw, device: device.clone() })
+    }
+}
+
+impl Drop for TexelView {
+    fn drop(&mut self) {
+        // SAFETY: the GPU is done with it (see the module's docs).
+        unsafe { self.device.raw.destroy_buffer_view(self.raw, None) };
     }
 }
 

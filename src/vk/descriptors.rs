@@ -2,7 +2,7 @@
 
 use super::set_layout::SetLayout;
 use super::shaders::Resource;
-use super::{Buffer, Device, Image, image::is_depth};
+use super::{Buffer, Device, Image, TexelView, image::is_depth};
 use crate::error::Result;
 use ash::vk;
 use std::sync::Arc;
@@ -14,6 +14,8 @@ pub enum Binding<'a> {
     Uniform(&'a Buffer, u64, u64),
     /// Range of a storage buffer: offset and size, bytes.
     Storage(&'a Buffer, u64, u64),
+    /// Uniform texel buffer.
+    Texels(&'a TexelView),
     /// Sampled image.
     Sampled(&'a Image),
     /// Input attachment.
@@ -80,6 +82,7 @@ impl DescriptorSet {
                 Binding::Uniform(buffer, offset, size) | Binding::Storage(buffer, offset, size) => {
                     update(write.buffer_info(&buffer_info(buffer, offset, size)));
                 }
+                Binding::Texels(view) => update(write.texel_buffer_view(&[view.raw])),
                 Binding::Sampled(image) => {
                     update(
                         write.image_info(&image_info(image.view, vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL)),
@@ -102,6 +105,7 @@ impl Binding<'_> {
         match self {
             Self::Uniform(..) => vk::DescriptorType::UNIFORM_BUFFER,
             Self::Storage(..) => vk::DescriptorType::STORAGE_BUFFER,
+            Self::Texels(_) => vk::DescriptorType::UNIFORM_TEXEL_BUFFER,
             Self::Sampled(_) => vk::DescriptorType::SAMPLED_IMAGE,
             Self::Input(_) | Self::HostDepth(_) => vk::DescriptorType::INPUT_ATTACHMENT,
         }

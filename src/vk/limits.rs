@@ -13,8 +13,6 @@ use ash::vk;
 pub struct DeviceLimits {
     /// `false` hides blending of 32-bit float targets.
     pub blend_float32: Option<bool>,
-    /// `false` hides atomic addition of 32-bit floats in buffers.
-    pub float_atomics: Option<bool>,
     /// `false` hides the atomic minimum and maximum of 64-bit integers in buffers.
     pub int64_atomics: Option<bool>,
     /// `false` hides buffer writes by fragment shaders.
@@ -25,6 +23,10 @@ pub struct DeviceLimits {
     pub dynamic_rendering: Option<bool>,
     /// `false` hides timestamps.
     pub timestamps: Option<bool>,
+    /// Upper bound of the subgroup size in which compute shaders pass values on; below 8 they do so by shared memory.
+    pub subgroup_size: Option<u32>,
+    /// Upper bound of `maxTexelBufferElements`.
+    pub max_texels: Option<u64>,
     /// Upper bound of `maxStorageBufferRange`, bytes.
     pub max_storage_buffer_range: Option<u64>,
     /// Lower bound of `minStorageBufferOffsetAlignment`, bytes, a power of two.
@@ -41,7 +43,6 @@ impl DeviceLimits {
     /// The abilities that remain under the mask.
     pub(super) fn leave(&self, abilities: Abilities) -> Abilities {
         let left = Abilities {
-            float_atomics: self.float_atomics != Some(false),
             int64_atomics: self.int64_atomics != Some(false),
             fragment_writes: self.fragment_writes != Some(false),
             independent_blend: self.independent_blend != Some(false),
@@ -56,8 +57,6 @@ impl DeviceLimits {
 pub struct Capabilities {
     /// R32F and RGBA32F render targets can be blended.
     pub blend_float32: bool,
-    /// 32-bit floats in storage buffers can be added to atomically (VK_EXT_shader_atomic_float).
-    pub float_atomics: bool,
     /// 64-bit integers in storage buffers have an atomic maximum (VK_KHR_shader_atomic_int64).
     pub int64_atomics: bool,
     /// Fragment shaders can write to storage buffers (the feature fragmentStoresAndAtomics).
@@ -66,6 +65,10 @@ pub struct Capabilities {
     pub independent_blend: bool,
     /// Timestamp period, ns, and mask of valid bits; `None` without timestamps.
     pub timestamps: Option<(f32, u64)>,
+    /// Subgroup size of compute shaders, if all subgroups have the same one and can shuffle; otherwise 0.
+    pub subgroup_size: u32,
+    /// `maxTexelBufferElements`.
+    pub max_texels: u64,
     /// `maxStorageBufferRange`, bytes.
     pub max_storage_buffer_range: u64,
     /// `minStorageBufferOffsetAlignment`, bytes.
@@ -119,6 +122,8 @@ impl Capabilities {
         let heaps = memory.memory_heaps_as_slice().iter();
         let local = heaps.filter(|heap| heap.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL));
         let memory = local.map(|heap| heap.size).max().unwrap_or(u64::MAX);
+        // SAFETY: by the caller.
+        let subgroup_size = unsafe { subgroup_size(instance, physical) };
         let side = limits
             .max_image_dimension2_d
             .min(limits.max_framebuffer_width)
@@ -130,12 +135,13 @@ impl Capabilities {
         Self {
             blend_float32: [vk::Format::R32_SFLOAT, vk::Format::R32G32B32A32_SFLOAT].into_iter().all(blends)
                 && mask.blend_float32 != Some(false),
-            float_atomics: enabled.float_atomics,
             int64_atomics: enabled.int64_atomics,
             fragment_writes: enabled.fragment_writes,
             independent_blend: enabled.independent_blend,
             timestamps: timestamps
                 .then_some((limits.timestamp_period, u64::MAX >> (64 - valid_bits.clamp(1, 64)))),
+            subgroup_size: subgroup_size.min(mask.subgroup_size.unwrap_or(u32::MAX)),
+            max_texels: u64::from(limits.max_texel_buffer_elements).min(mask.max_texels.unwrap_or(u64::MAX)),
             max_storage_buffer_range: u64::from(limits.max_storage_buffer_range)
                 .min(mask.max_storage_buffer_range.unwrap_or(u64::MAX)),
             storage_buffer_alignment: limits
@@ -152,4 +158,28 @@ impl Capabilities {
             memory: memory.min(mask.memory.unwrap_or(u64::MAX)),
         }
     }
+}
+
+/// The size of all subgroups of compute shaders that can shuffle; 0 if they cannot, or are not all of one size.
+///
+/// # Safety
+/// `physical` is one of the instance's devices, and of version 1.1 at least.
+unsafe fn subgroup_size(instance: &ash::Instance, physical: vk::PhysicalDevice) -> u32 {
+    // SAFETY: by the caller.
+    let extensions = unsafe { instance.enumerate_device_extension_properties(physical) }.unwrap_or_default();
+    let varies = extensions
+        .iter()
+        .any(|found| found.extension_name_as_c_str() == Ok(ash::ext::subgroup_size_control::NAME));
+    let mut subgroups = vk::PhysicalDeviceSubgroupProperties::default();
+    let mut sizes = vk::PhysicalDeviceSubgroupSizeControlProperties::default();
+    let mut query = vk::PhysicalDeviceProperties2::default().push_next(&mut subgroups);
+    if varies {
+        query = query.push_next(&mut sizes);
+    }
+    // SAFETY: by the caller; each struct is of Vulkan 1.1 or of an extension that the device has.
+    unsafe { instance.get_physical_device_properties2(physical, &mut query) };
+    let shuffles = subgroups.supported_operations.contains(vk::SubgroupFeatureFlags::SHUFFLE)
+        && subgroups.supported_stages.contains(vk::ShaderStageFlags::COMPUTE);
+    let fixed = !varies || sizes.min_subgroup_size == sizes.max_subgroup_size;
+    if shuffles && fixed { subgroups.subgroup_size } else { 0 }
 }

@@ -54,7 +54,7 @@ mod transfer;
 mod validation;
 
 pub(crate) use access::{Access, Use};
-pub(crate) use buffer::Buffer;
+pub(crate) use buffer::{Buffer, TexelView};
 pub use choose::{DeviceDescription, describe_devices, preferred};
 #[cfg(feature = "window")]
 pub use command_pool::CommandPool;

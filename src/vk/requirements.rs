@@ -6,8 +6,6 @@ use std::ffi::CStr;
 /// Optional device features.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Abilities {
-    /// 32-bit floats in storage buffers can be added to atomically.
-    pub float_atomics: bool,
     /// 64-bit integers in storage buffers have an atomic minimum and maximum.
     pub int64_atomics: bool,
     /// Fragment shaders can write to storage buffers.
@@ -37,17 +35,11 @@ pub const QUEUE: vk::QueueFlags =
     vk::QueueFlags::from_raw(vk::QueueFlags::GRAPHICS.as_raw() | vk::QueueFlags::COMPUTE.as_raw());
 
 /// All optional features.
-pub const ABILITIES: [Ability; 4] = [
-    Ability {
-        extension: Some(ash::ext::shader_atomic_float::NAME),
-        features: "shaderBufferFloat32AtomicAdd",
-        buys: "blended splats by compute shaders, which is faster on CPU devices",
-        of: |abilities| abilities.float_atomics,
-    },
+pub const ABILITIES: [Ability; 3] = [
     Ability {
         extension: Some(ash::khr::shader_atomic_int64::NAME),
         features: "shaderInt64, shaderBufferInt64Atomics",
-        buys: "lines and triangles by pull-push; points by pull-push, and unblended splats, by compute shaders",
+        buys: "lines and triangles by pull-push, and points by pull-push by compute shaders",
         of: |abilities| abilities.int64_atomics,
     },
     Ability {
@@ -89,13 +81,9 @@ impl Abilities {
         let extensions =
             unsafe { instance.enumerate_device_extension_properties(physical) }.unwrap_or_default();
         let has = |name: &CStr| extensions.iter().any(|found| found.extension_name_as_c_str() == Ok(name));
-        let (floats, integers) =
-            (has(ash::ext::shader_atomic_float::NAME), has(ash::khr::shader_atomic_int64::NAME));
+        let integers = has(ash::khr::shader_atomic_int64::NAME);
         let mut features = Features::default();
         let mut query = vk::PhysicalDeviceFeatures2::default();
-        if floats {
-            query = query.push_next(&mut features.floats);
-        }
         if integers {
             query = query.push_next(&mut features.integers);
         }
@@ -103,7 +91,6 @@ impl Abilities {
         unsafe { instance.get_physical_device_features2(physical, &mut query) };
         let core = query.features;
         Self {
-            float_atomics: floats && features.floats.shader_buffer_float32_atomic_add == vk::TRUE,
             int64_atomics: integers
                 && features.integers.shader_buffer_int64_atomics == vk::TRUE
                 && core.shader_int64 == vk::TRUE,
@@ -124,8 +111,6 @@ impl Abilities {
                 .shader_int64(self.int64_atomics)
                 .fragment_stores_and_atomics(self.fragment_writes)
                 .independent_blend(self.independent_blend),
-            floats: vk::PhysicalDeviceShaderAtomicFloatFeaturesEXT::default()
-                .shader_buffer_float32_atomic_add(self.float_atomics),
             integers: vk::PhysicalDeviceShaderAtomicInt64Features::default()
                 .shader_buffer_int64_atomics(self.int64_atomics),
         }
@@ -134,7 +119,6 @@ impl Abilities {
     /// Abilities in both.
     pub fn and(self, other: Self) -> Self {
         Self {
-            float_atomics: self.float_atomics && other.float_atomics,
             int64_atomics: self.int64_atomics && other.int64_atomics,
             fragment_writes: self.fragment_writes && other.fragment_writes,
             independent_blend: self.independent_blend && other.independent_blend,
@@ -147,7 +131,6 @@ impl Abilities {
 pub struct Features {
     /// Features of Vulkan 1.0.
     pub core: vk::PhysicalDeviceFeatures,
-    floats: vk::PhysicalDeviceShaderAtomicFloatFeaturesEXT<'static>,
     integers: vk::PhysicalDeviceShaderAtomicInt64Features<'static>,
 }
 
@@ -161,11 +144,7 @@ impl Features {
     /// A host that chains `VkPhysicalDeviceVulkan12Features` sets `shaderBufferInt64Atomics` there by [`Abilities::int64_atomics`] instead:
     /// Vulkan forbids both.
     pub fn chain<'a>(&'a mut self, mut info: vk::DeviceCreateInfo<'a>) -> vk::DeviceCreateInfo<'a> {
-        // An earlier call may have left pointers.
-        (self.floats.p_next, self.integers.p_next) = (std::ptr::null_mut(), std::ptr::null_mut());
-        if self.floats.shader_buffer_float32_atomic_add == vk::TRUE {
-            info = info.push_next(&mut self.floats);
-        }
+        self.integers.p_next = std::ptr::null_mut();
         if self.integers.shader_buffer_int64_atomics == vk::TRUE {
             info = info.push_next(&mut self.integers);
         }

@@ -56,7 +56,7 @@ fn the_report_has_everything_and_adds_up() {
     let targets = report["targets"].as_array().unwrap();
     let bytes: u64 = targets.iter().map(|target| target["bytes"].as_u64().unwrap()).sum();
     assert_eq!(report["target_bytes"].as_u64(), Some(bytes));
-    assert!(targets.iter().any(|target| target["name"] == "coverage"), "{report}");
+    assert!(targets.iter().any(|target| target["name"] == "picture"), "{report}");
     assert!(
         targets.iter().all(|target| target["name"].is_string() && target["format"].is_string()),
         "{report}"
@@ -68,7 +68,7 @@ fn the_report_has_everything_and_adds_up() {
     }
     let passes = report["passes"].as_array().unwrap();
     let names: Vec<_> = passes.iter().map(|pass| pass["name"].as_str().unwrap()).collect();
-    for name in ["footprint", "visibility", "attribute", "normalize"] {
+    for name in ["footprint", "boxes", "surface"] {
         assert!(names.contains(&name), "{name}: {names:?}");
     }
     passes.iter().for_each(|pass| check_statistics(&pass["ms"]));
@@ -135,7 +135,7 @@ fn times_are_a_table_on_standard_error() {
     let labels: Vec<_> = run.err.lines().map(|line| line.split_whitespace().next().unwrap()).collect();
     assert!(run.err.lines().next().unwrap().ends_with(" pipelines made"), "{}", run.err);
     assert_eq!((labels.get(1), labels.last()), (Some(&"pass"), Some(&"frame")), "{}", run.err);
-    assert!(labels.contains(&"footprint") && labels.contains(&"normalize"), "{}", run.err);
+    assert!(labels.contains(&"footprint") && labels.contains(&"surface"), "{}", run.err);
 }
 
 #[test]
@@ -163,10 +163,9 @@ fn half_precision_is_reported_and_takes_less_memory() {
     let Some(program) = Program::with_device("half_precision_is_reported_and_takes_less_memory") else {
         return;
     };
-    program.write("limits.json", r#"{"float_atomics":false}"#);
     let bytes = |flag: &str, precision: &str| {
         let run = program.run(&format!(
-            "render scene:bumpy-sphere?points=1000 -o a.png --validate --json - --device-limits limits.json {flag}"
+            "render scene:bumpy-sphere?points=1000 -o a.png --validate --json - --rasterizer draw {flag}"
         ));
         let report: Value = serde_json::from_str(run.text()).unwrap();
         assert_eq!(report["precision"], precision);
@@ -185,4 +184,21 @@ fn half_precision_reports_its_error() {
         serde_json::from_str(&std::fs::read_to_string(program.path("r.json")).unwrap()).unwrap();
     let [largest, rms] = ["largest", "rms"].map(|key| report["half_error"][key].as_f64().unwrap());
     assert!(rms > 1e-6 && rms < largest && largest < 3e-2, "{report}");
+}
+
+#[test]
+fn stages_are_timed_apart_beside_the_pass_that_does_them_together() {
+    let name = "stages_are_timed_apart_beside_the_pass_that_does_them_together";
+    let Some(program) = Program::with_device(name) else { return };
+    let render = "render scene:bumpy-sphere?points=1000 -o a.png --size 32x32 --validate --frames 3 --quiet";
+    let run = program.run(&format!("{render} --rasterizer compute --times=split"));
+    assert_eq!(run.code, 0, "{}", run.err);
+    for label in ["surface", "visibility", "attribute", "normalize"] {
+        assert!(run.err.lines().any(|line| line.starts_with(label)), "{label}: {}", run.err);
+    }
+    let ratio = run.err.lines().find(|line| line.starts_with("surface /")).unwrap();
+    let ratio: f64 = ratio.rsplit(' ').next().unwrap().parse().unwrap();
+    assert!(ratio > 0.0, "{ratio}");
+    let run = program.run(&format!("{render} --rasterizer draw --times=split"));
+    assert!(run.code != 0 && run.err.contains("--rasterizer compute"), "{}", run.err);
 }

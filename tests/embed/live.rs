@@ -22,7 +22,8 @@ use surfel::{Picture, Precision, Rasterizer, RenderOptions, Scene, Settings, Spl
 pub const NARROW: DeviceLimits = DeviceLimits {
     max_storage_buffer_range: Some(512 << 10),
     blend_float32: None,
-    float_atomics: None,
+    subgroup_size: None,
+    max_texels: None,
     int64_atomics: None,
     fragment_writes: None,
     independent_blend: None,
@@ -295,8 +296,10 @@ fn buffers_that_take_turns_make_nothing() {
     let (memory, counts) = Counted::new(&host);
     let device = host.external_device(Some(Box::new(memory))).unwrap();
     let frame = Frame::new(&host, KIND, SIZE).unwrap();
+    // For tiles splats are the frame's, not the scenes'.
+    let rasterizer = Some(Rasterizer::Draw);
     let options =
-        Options { target: frame.target(), frames_in_flight: 2, precision: Precision::Full, rasterizer: None };
+        Options { target: frame.target(), frames_in_flight: 2, precision: Precision::Full, rasterizer };
     // SAFETY: the target is the frame's.
     let mut rig = Rig { renderer: unsafe { Renderer::new(&device, options) }.unwrap(), device, frame };
     let (layout, surfels) = (Layout::vertices(), sphere(2_000));

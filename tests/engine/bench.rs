@@ -80,7 +80,7 @@ fn a_run_has_its_time_its_error_and_the_terms_of_that() {
     assert!(time.cpu.min > 0.0);
     if device.capabilities().timestamps.is_some() {
         let names: Vec<_> = time.passes.iter().map(|pass| pass.name.as_str()).collect();
-        for pass in ["footprint", "visibility", "attribute", "normalize"] {
+        for pass in ["footprint", "boxes", "surface"] {
             assert!(names.contains(&pass), "{names:?}");
         }
         let sum: f64 = time.passes.iter().map(|pass| pass.ms.median).sum();

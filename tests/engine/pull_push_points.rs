@@ -21,11 +21,12 @@ const PRESETS: [Method; 2] = [pull_push::METHOD, pull_push::PAPER];
 const NO_ATOMICS: DeviceLimits = DeviceLimits {
     int64_atomics: Some(false),
     blend_float32: None,
-    float_atomics: None,
     fragment_writes: None,
     independent_blend: None,
     dynamic_rendering: None,
     timestamps: None,
+    subgroup_size: None,
+    max_texels: None,
     max_storage_buffer_range: None,
     storage_buffer_alignment: None,
     max_storage_buffers: None,

@@ -343,6 +343,9 @@ impl Ids {
             (Some(image), _) if image.operands.contains(&Operand::Dim(Dim::DimSubpassData)) => {
                 "INPUT_ATTACHMENT"
             }
+            (Some(image), _) if image.operands.contains(&Operand::Dim(Dim::DimBuffer)) => {
+                "UNIFORM_TEXEL_BUFFER"
+            }
             (Some(_), _) => "SAMPLED_IMAGE",
             (None, Some(Operand::StorageClass(StorageClass::Uniform))) => "UNIFORM_BUFFER",
             (None, Some(Operand::StorageClass(StorageClass::StorageBuffer))) => "STORAGE_BUFFER",

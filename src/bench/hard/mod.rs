@@ -118,7 +118,15 @@ impl Variant {
     fn options(self, size: [u32; 2]) -> RenderOptions {
         let rasterizer = if self == Self::Compute { Rasterizer::Compute } else { Rasterizer::Draw };
         let (outputs, precision) = (Outputs { normal: true, depth: true, id: false }, self.precision());
-        RenderOptions { size, outputs, precision, rasterizer: Some(rasterizer), profile: false, count: true }
+        RenderOptions {
+            size,
+            outputs,
+            precision,
+            rasterizer: Some(rasterizer),
+            profile: false,
+            count: true,
+            ..Default::default()
+        }
     }
 }
 

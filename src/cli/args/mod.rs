@@ -153,15 +153,24 @@ pub struct Render {
     /// Writes a report: device, settings, counts, times; `-` for standard output
     #[arg(long, value_name = "FILE")]
     pub json: Option<OsString>,
-    /// Prints the time of each pass
-    #[arg(long)]
-    pub times: bool,
+    /// Prints the time of each pass; `=split` also of the stages that one pass over tiles does together, and their ratio
+    #[arg(long, value_enum, value_name = "PASSES", num_args = 0..=1, require_equals = true, default_missing_value = "passes")]
+    pub times: Option<PassTimes>,
     /// Renders N frames; the times exclude the first one unless it is the only one
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     pub frames: u32,
     /// Prints nothing but warnings and errors
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+/// Which passes are timed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum PassTimes {
+    /// Those of a frame
+    Passes,
+    /// Beside them visibility, attribute and normalize apart
+    Split,
 }
 
 impl Render {

@@ -367,8 +367,7 @@ fn variant(
     settings.check()?;
     settings.splatting.normalization.check_weights(streams.weights.is_some())?;
     settings.check_primitives(streams.primitives.any())?;
-    let blends = settings.splatting.visibility != Visibility::Nearest;
-    let rasterizer = rasterizer_for(device, options, blends, settings.alpha)?;
+    let rasterizer = rasterizer_for(device, options, settings.alpha, true)?;
     let options = RenderOptions { precision: width_of_sums(device, options, rasterizer), ..*options };
     Ok(Variant::new(&[streams], true, settings, &options, rasterizer))
 }

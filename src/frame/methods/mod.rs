@@ -24,8 +24,8 @@ pub enum Path {
 pub fn passes(variant: &Variant, path: Path, scenes: usize) -> Vec<&'static Pass> {
     match (variant.pull_push, variant.visibility) {
         (Some(settings), _) => pull_push::passes(variant, settings.storage, scenes),
-        (None, Visibility::Nearest) => nearest::passes(path, scenes),
-        (None, visibility) => blended::passes(path, visibility == Visibility::Axis),
+        (None, Visibility::Nearest) => nearest::passes(path),
+        (None, visibility) => blended::passes(path, visibility == Visibility::Axis, variant.split),
     }
 }
 

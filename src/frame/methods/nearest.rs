@@ -4,19 +4,20 @@
 //! surfels ─ footprint → splats ─ nearest → n, rgb, κ, coverage ─ normalize → picture, normal, depth
 //! ```
 //!
-//! Computed, `nearest` leaves the number of the splat, and `resolve` what it is.
+//! Computed, `nearest` finds the splats of a tile by `boxes`, and writes the picture:
+//!
+//! ```text
+//! surfels ─ footprint → splats ─ boxes → hierarchy ─ nearest → picture, normal, depth
+//! ```
 
 use super::Path;
 use crate::frame::pass::Pass;
-use crate::frame::passes::{footprint::FOOTPRINT, nearest, normalize, resolve, seed::SEED};
+use crate::frame::passes::{boxes::BOXES, footprint::FOOTPRINT, nearest, normalize, seed::SEED};
 
 /// The passes.
-pub fn passes(path: Path, scenes: usize) -> Vec<&'static Pass> {
+pub fn passes(path: Path) -> Vec<&'static Pass> {
     match path {
-        Path::Computed => {
-            let resolve = if scenes == 0 { &resolve::EMPTY } else { &resolve::RESOLVE };
-            vec![&FOOTPRINT, &nearest::COMPUTED, resolve, &normalize::COMPUTED]
-        }
+        Path::Computed => vec![&FOOTPRINT, &BOXES, &nearest::COMPUTED],
         Path::Drawn => vec![&FOOTPRINT, &nearest::DRAWN, &normalize::DRAWN],
         Path::Subpasses { seed: false } => vec![&FOOTPRINT, &nearest::DRAWN, &normalize::IN_SUBPASS],
         Path::Subpasses { seed: true } => {

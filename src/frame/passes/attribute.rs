@@ -1,21 +1,21 @@
 //! Attribute: splats within ε of the nearest surface → weighted sums (zwicker2004 §6, second pass; `attribute.glsl`).
 
-use super::scatter;
+use super::tiles;
 use crate::frame::pass::{Commands, Over, Pass, Program, Programs, Start, Targets};
-use crate::frame::resource::Resource::{LargeSplats, ScreenClips, Splats, Sums0, Sums1, Tiles, Visibility};
+use crate::frame::resource::Resource::{Attributes, Boxes, ScreenClips, Splats, Sums0, Sums1, Visibility};
 use crate::vk::shaders::{
     ATTRIBUTE_CLIP_LINES_FRAGMENT, ATTRIBUTE_CLIP_LINES_VERTEX, ATTRIBUTE_COMPUTE, ATTRIBUTE_FRAGMENT,
-    ATTRIBUTE_VERTEX,
+    ATTRIBUTE_SUBGROUPS_COMPUTE, ATTRIBUTE_VERTEX,
 };
 use crate::vk::{Blend, DepthTest, Topology};
 
-/// A scatter with atomic sums.
+/// A workgroup a tile.
 pub static COMPUTED: Pass = Pass {
     name: "attribute",
-    reads: &[Splats, LargeSplats, ScreenClips, Visibility, Tiles],
+    reads: &[Splats, Boxes, Attributes, ScreenClips, Visibility],
     writes: &[Sums0, Sums1],
-    clears: &[Sums0, Sums1],
-    programs: Programs::OfScene(|_| scatter(&ATTRIBUTE_COMPUTE)),
+    clears: &[],
+    programs: Programs::OfFrame(|variant| tiles(variant, [&ATTRIBUTE_COMPUTE, &ATTRIBUTE_SUBGROUPS_COMPUTE])),
     commands: Commands::Dispatches,
 };
 

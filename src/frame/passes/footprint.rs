@@ -1,16 +1,25 @@
 //! Footprint: surfels → splats, culled and counted (zwicker2004 §4; `footprint.glsl`).
 
 use crate::frame::pass::{Commands, Over, Pass, Program, Programs};
-use crate::frame::resource::Resource::{Counts, LargeSplats, ScreenClips, Splats};
-use crate::vk::shaders::{FOOTPRINT_COMPUTE, constant};
+use crate::frame::resource::Resource::{Attributes, Boxes, Counts, ScreenClips, Splats};
+use crate::frame::variant::SceneVariant;
+use crate::vk::shaders::{FOOTPRINT_COMPUTE, FOOTPRINT_TILES_COMPUTE, constant};
+
+/// An invocation a surfel; for tiles, whose lists of splats have no gaps, an invocation for each that there is room for.
+fn footprint(variant: &SceneVariant) -> Program {
+    match variant.frame.is_tiled() {
+        true => Program::compute(&FOOTPRINT_TILES_COMPUTE, Over::Slots),
+        false => Program::compute(&FOOTPRINT_COMPUTE, Over::Surfels),
+    }
+}
 
 /// Surfels of each scene → its splats, and their counts.
 pub static FOOTPRINT: Pass = Pass {
     name: "footprint",
     reads: &[],
-    writes: &[Splats, LargeSplats, ScreenClips, Counts],
-    clears: &[LargeSplats, Counts],
-    programs: Programs::OfScene(|_| vec![Program::compute(&FOOTPRINT_COMPUTE, Over::Surfels)]),
+    writes: &[Splats, Boxes, Attributes, ScreenClips, Counts],
+    clears: &[Counts],
+    programs: Programs::OfScene(|variant| vec![footprint(variant)]),
     commands: Commands::Dispatches,
 };
 
@@ -19,11 +28,10 @@ pub static FOOTPRINT: Pass = Pass {
 pub static MOVED: Pass = Pass {
     name: "footprint",
     reads: &[],
-    writes: &[Splats, LargeSplats, ScreenClips],
-    clears: &[LargeSplats],
-    programs: Programs::OfScene(|_| {
-        let program = Program::compute(&FOOTPRINT_COMPUTE, Over::Surfels);
-        vec![program.with(constant::MOVED, true).with(constant::COUNT, false)]
+    writes: &[Splats, Boxes, Attributes, ScreenClips],
+    clears: &[],
+    programs: Programs::OfScene(|variant| {
+        vec![footprint(variant).with(constant::MOVED, true).with(constant::COUNT, false)]
     }),
     commands: Commands::Dispatches,
 };

@@ -4,6 +4,7 @@
 //! What is drawn is drawn in subpasses of a host, too ([`crate::embed::native`]).
 
 pub mod attribute;
+pub mod boxes;
 pub mod copy;
 pub mod fetch;
 pub mod footprint;
@@ -12,22 +13,22 @@ pub mod normalize;
 pub mod project;
 pub mod pull;
 pub mod push;
-pub mod resolve;
 pub mod seed;
 pub mod shade;
-pub mod tiles;
+pub mod surface;
 pub mod visibility;
 
 use crate::frame::pass::{Over, Program};
-use crate::vk::shaders::{Module, constant};
+use crate::frame::variant::Variant;
+use crate::vk::shaders::Module;
 
-/// The two programs of a pass over every fragment of every splat (`lib/scatter_splat.glsl`): splats of many pixels, which would hold their
-/// neighbours up, are shared by workgroups.
-fn scatter(module: &'static Module) -> Vec<Program> {
-    vec![
-        Program::compute(module, Over::Surfels).with(constant::LARGE_SPLATS, false),
-        Program::compute(module, Over::LargeSplats).with(constant::LARGE_SPLATS, true),
-    ]
+/// Id of the specialization constant that is the size of the workgroups of passes over tiles: LANES of `lib/team.glsl`.
+const LANES: u32 = 44;
+
+/// The program of a pass over tiles, whose teams pass values on by shared memory or, the second, by subgroups.
+fn tiles(variant: &Variant, [shared, subgroups]: [&'static Module; 2]) -> Vec<Program> {
+    let module = if variant.team.subgroups { subgroups } else { shared };
+    vec![Program::compute(module, Over::Tiles).with(LANES, variant.team.lanes)]
 }
 
 #[cfg(test)]
@@ -51,10 +52,12 @@ mod tests {
         for (variant, method) in
             variants().iter().flat_map(|variant| Method::ALL.map(|method| (variant, method)))
         {
-            for visibility in [method.splatting.visibility, Visibility::Axis] {
+            for (visibility, split) in
+                [(method.splatting.visibility, false), (Visibility::Ray, true), (Visibility::Axis, true)]
+            {
                 for (primitives, count) in [(false, false), (false, true), (true, true)] {
                     let pull_push = method.pull_push;
-                    let frame = Variant { visibility, pull_push, primitives, count, ..variant.frame };
+                    let frame = Variant { visibility, split, pull_push, primitives, count, ..variant.frame };
                     for pass in paths.iter().flat_map(|path| passes(&frame, *path, 1)) {
                         if !all.iter().any(|known| std::ptr::eq(*known, pass)) {
                             all.push(pass);
@@ -69,14 +72,14 @@ mod tests {
 
     const RESOURCES: [Resource; 17] = [
         Resource::Splats,
-        Resource::LargeSplats,
+        Resource::Boxes,
         Resource::ScreenClips,
         Resource::Counts,
         Resource::LargeTriangles,
         Resource::Visibility,
         Resource::Sums0,
         Resource::Sums1,
-        Resource::Tiles,
+        Resource::Attributes,
         Resource::Coverage,
         Resource::Nearest,
         Resource::NearestDepth,

@@ -1,26 +1,23 @@
 //! Nearest: splats → the nearest one of each pixel, alone (zwicker2004 table 1; botsch2003 §3.2; `nearest.glsl`).
 
-use super::scatter;
+use super::tiles;
 use crate::frame::pass::{Commands, Over, Pass, Program, Programs, Start, Targets};
 use crate::frame::resource::Resource::{
-    Coverage, LargeSplats, ScreenClips, Splats, Sums0, Sums1, Visibility,
+    Attributes, Boxes, Coverage, Picture, ScreenClips, Splats, Sums0, Sums1, Visibility,
 };
 use crate::vk::shaders::{
-    NEAREST_CLIP_LINES_FRAGMENT, NEAREST_CLIP_LINES_VERTEX, NEAREST_COMPUTE, NEAREST_COVERAGE_COMPUTE,
-    NEAREST_COVERAGE_FRAGMENT, NEAREST_COVERAGE_VERTEX, NEAREST_FRAGMENT, NEAREST_VERTEX,
+    NEAREST_CLIP_LINES_FRAGMENT, NEAREST_CLIP_LINES_VERTEX, NEAREST_COMPUTE, NEAREST_COVERAGE_FRAGMENT,
+    NEAREST_COVERAGE_VERTEX, NEAREST_FRAGMENT, NEAREST_SUBGROUPS_COMPUTE, NEAREST_VERTEX,
 };
 use crate::vk::{Blend, DepthTest, Topology};
 
-/// A scatter with atomic maxima, which leaves which splat it is.
+/// A workgroup a tile, which writes the picture.
 pub static COMPUTED: Pass = Pass {
     name: "nearest",
-    reads: &[Splats, LargeSplats, ScreenClips],
-    writes: &[Visibility, Coverage],
-    clears: &[Visibility, Coverage],
-    programs: Programs::OfScene(|variant| match variant.frame.coverage {
-        false => scatter(&NEAREST_COMPUTE),
-        true => scatter(&NEAREST_COVERAGE_COMPUTE),
-    }),
+    reads: &[Splats, Boxes, Attributes, ScreenClips],
+    writes: &[Visibility, Sums0, Coverage, Picture],
+    clears: &[],
+    programs: Programs::OfFrame(|variant| tiles(variant, [&NEAREST_COMPUTE, &NEAREST_SUBGROUPS_COMPUTE])),
     commands: Commands::Dispatches,
 };
 

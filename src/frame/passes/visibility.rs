@@ -1,24 +1,23 @@
 //! Visibility: splats → depth of the nearest surface, moved back by ε (zwicker2004 §6, first pass; `visibility.glsl`).
 
-use super::scatter;
+use super::tiles;
 use crate::frame::pass::{Commands, Over, Pass, Program, Programs, Start, Targets};
-use crate::frame::resource::Resource::{Coverage, LargeSplats, ScreenClips, Splats, Visibility};
+use crate::frame::resource::Resource::{Boxes, Coverage, ScreenClips, Splats, Visibility};
 use crate::vk::shaders::{
     VISIBILITY_CLIP_LINES_FRAGMENT, VISIBILITY_CLIP_LINES_VERTEX, VISIBILITY_COMPUTE,
-    VISIBILITY_COVERAGE_COMPUTE, VISIBILITY_COVERAGE_FRAGMENT, VISIBILITY_COVERAGE_VERTEX,
-    VISIBILITY_FRAGMENT, VISIBILITY_VERTEX,
+    VISIBILITY_COVERAGE_FRAGMENT, VISIBILITY_COVERAGE_VERTEX, VISIBILITY_FRAGMENT,
+    VISIBILITY_SUBGROUPS_COMPUTE, VISIBILITY_VERTEX,
 };
 use crate::vk::{Blend, DepthTest, Topology};
 
-/// A scatter with atomic maxima.
+/// A workgroup a tile.
 pub static COMPUTED: Pass = Pass {
     name: "visibility",
-    reads: &[Splats, LargeSplats, ScreenClips],
+    reads: &[Splats, Boxes, ScreenClips],
     writes: &[Visibility, Coverage],
-    clears: &[Visibility, Coverage],
-    programs: Programs::OfScene(|variant| match variant.frame.coverage {
-        false => scatter(&VISIBILITY_COMPUTE),
-        true => scatter(&VISIBILITY_COVERAGE_COMPUTE),
+    clears: &[],
+    programs: Programs::OfFrame(|variant| {
+        tiles(variant, [&VISIBILITY_COMPUTE, &VISIBILITY_SUBGROUPS_COMPUTE])
     }),
     commands: Commands::Dispatches,
 };

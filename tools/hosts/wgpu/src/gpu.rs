@@ -16,7 +16,6 @@ pub struct Gpu {
 }
 
 /// Features of wgpu that correspond to the engine's optional features.
-const FLOAT_ATOMICS: Features = Features::SHADER_FLOAT32_ATOMIC;
 const INT64_ATOMICS: Features = Features::SHADER_INT64.union(Features::SHADER_INT64_ATOMIC_MIN_MAX);
 
 /// wgpu on Vulkan, with the validation layers if they are installed.
@@ -58,7 +57,7 @@ impl Gpu {
         let wanted = wgpu::DeviceDescriptor {
             label: Some("host"),
             // The optional features of the engine, by wgpu's names.
-            required_features: adapter.features() & (FLOAT_ATOMICS | INT64_ATOMICS),
+            required_features: adapter.features() & INT64_ATOMICS,
             required_limits: wgpu::Limits::default().using_resolution(adapter.limits()),
             ..Default::default()
         };
@@ -94,7 +93,6 @@ impl Gpu {
         let features = self.device.features();
         let flags = self.adapter.get_downlevel_capabilities().flags;
         Abilities {
-            float_atomics: features.contains(FLOAT_ATOMICS),
             int64_atomics: features.contains(INT64_ATOMICS),
             fragment_writes: flags.contains(DownlevelFlags::FRAGMENT_WRITABLE_STORAGE),
             independent_blend: flags.contains(DownlevelFlags::INDEPENDENT_BLEND),

@@ -19,7 +19,11 @@ impl Listener {
     /// Returns an error if there were messages of Vulkan.
     pub fn silent(&self) -> Result<()> {
         let messages = self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        if messages.is_empty() { Ok(()) } else { Err(format!("{} messages of Vulkan", messages.len()).into()) }
+        if messages.is_empty() {
+            Ok(())
+        } else {
+            Err(format!("{} messages of Vulkan", messages.len()).into())
+        }
     }
 }
 

@@ -1,0 +1,59 @@
+// A pixel of the picture from what visibility and attribute left there (zwicker2004 §6, third pass; equation 2's normalization).
+
+#include "lib/sums.glsl"
+#include "lib/shading.glsl"
+#include "lib/background.glsl"
+
+layout(constant_id = 20) const bool SHADE_SPLATS = false; // colours are light already
+
+struct Pixel {
+    vec4 image;
+    vec3 normal;
+    float depth;
+};
+
+// The pixel at `centre` (px), of which `alpha` is covered, from what visibility and attribute left there.
+Pixel normalize_pixel(vec2 centre, bool visible, float alpha, vec4 s0, vec4 s1) {
+    // Only what visibility wrote is there: the attribute footprint is wider and would bloat the outline.
+    if (!visible || alpha == 0.0 || SUM_WEIGHTS && !(s0.x > 0.0)) return Pixel(frame.background, vec3(0.0), 0.0);
+
+    float total = NORMALIZATION == PER_PIXEL ? s0.x : 1.0;
+    vec3 ray = centre.x * view.ray_hi[0].xyz + centre.y * view.ray_hi[1].xyz + view.ray_hi[2].xyz;
+    vec3 to_eye = PERSPECTIVE ? -normalize(ray) : -view.forward_hi.xyz;
+    vec3 normal = vec3(0.0);
+    // Opposite normals that cancel leave no direction.
+    if (SUM_NORMALS) normal = length(s0.yzw) < 1e-6 * s0.x ? to_eye : normalize(s0.yzw);
+    vec3 colour = frame.albedo.rgb;
+    if (SUM_COLOURS) colour = (SUM_NORMALS ? s1.yzw : s0.yzw) / total;
+    float depth = 0.0;
+    if (SUM_DEPTH) {
+        float key = s1.x / (s0.x * frame.key_gain);
+        depth = PERSPECTIVE ? view.near / key : view.near + (1.0 - key) / view.key_slope;
+    }
+
+    vec3 shaded;
+    if (SHADING == LIT) shaded = SHADE_SPLATS ? colour : lit(FRAME_SHINE, colour, normal, to_eye);
+    if (SHADING == COLOUR) shaded = colour;
+    if (SHADING == NORMAL) shaded = normal;
+    if (SHADING == DEPTH) shaded = vec3(depth);
+    if (SHADING == OVERLAPS || SHADING == WEIGHT) shaded = vec3(s0.x);
+    return Pixel(over_background(shaded, alpha), normal, depth);
+}
+
+#ifdef COMPUTE
+
+layout(set = 1, binding = 3, std430) writeonly buffer Picture { float picture[]; }; // colour, then normals, then depths
+layout(set = 1, binding = 3, std430) writeonly buffer PictureColours { vec4 picture_colours[]; };
+
+layout(constant_id = 9) const bool OUT_NORMAL = false;
+layout(constant_id = 10) const bool OUT_DEPTH = false;
+
+// Writes pixel i.
+void store_pixel(uint i, Pixel pixel) {
+    uint pixels = uint(frame.viewport.x) * uint(frame.viewport.y);
+    picture_colours[i] = pixel.image;
+    if (OUT_NORMAL) for (uint k = 0; k < 3; k++) picture[4 * pixels + 3 * i + k] = pixel.normal[k];
+    if (OUT_DEPTH) picture[(OUT_NORMAL ? 7 : 4) * pixels + i] = pixel.depth;
+}
+
+#endif

@@ -1,0 +1,16 @@
+//! Surface: splats → picture, normal, depth: visibility, attribute and normalize tile by tile, in one dispatch (zwicker2004 §6; `surface.glsl`).
+
+use super::tiles;
+use crate::frame::pass::{Commands, Pass, Programs};
+use crate::frame::resource::Resource::{Attributes, Boxes, Picture, ScreenClips, Splats};
+use crate::vk::shaders::{SURFACE_COMPUTE, SURFACE_SUBGROUPS_COMPUTE};
+
+/// A workgroup a tile.
+pub static SURFACE: Pass = Pass {
+    name: "surface",
+    reads: &[Splats, Boxes, Attributes, ScreenClips],
+    writes: &[Picture],
+    clears: &[],
+    programs: Programs::OfFrame(|variant| tiles(variant, [&SURFACE_COMPUTE, &SURFACE_SUBGROUPS_COMPUTE])),
+    commands: Commands::Dispatches,
+};
