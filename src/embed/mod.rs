@@ -21,7 +21,7 @@
 //! use surfel::vk::{Device, DeviceLimits};
 //! use surfel::{Precision, Scene, Settings};
 //!
-//! Objects of the host.
+//! // Objects of the host.
 //! struct Host {
 //!     instance: ash::Instance,
 //!     physical: vk::PhysicalDevice,
@@ -30,14 +30,14 @@
 //!     pass: vk::RenderPass,
 //! }
 //!
-//! Before the host creates its device: optional features to enable.
+//! // Before the host creates its device: optional features to enable.
 //! fn wanted(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Abilities {
 //!     let abilities = unsafe { Abilities::of(instance, physical) };
 //!     // VkDeviceCreateInfo takes `abilities.extensions()`, `abilities.features().core`, and the rest by `Features::chain`.
 //!     abilities
 //! }
 //!
-//! Once. `cmd` is recording outside a render pass; keep `Staging` until the GPU has executed `cmd`.
+//! // Once. `cmd` is recording outside a render pass; keep `Staging` until the GPU has executed `cmd`.
 //! unsafe fn load(host: &Host, enabled: Abilities, cmd: vk::CommandBuffer, surfels: &Surfels) -> surfel::Result<(Arc<Scene>, embed::Staging, Renderer)> {
 //!     let device = unsafe {
 //!         Device::from_external(ExternalDevice {
@@ -74,7 +74,7 @@
 //! /// Each frame.
 //! unsafe fn frame(renderer: &mut Renderer, cmd: vk::CommandBuffer, scene: &Arc<Scene>, camera: Camera, viewport: vk::Viewport) -> surfel::Result<()> {
 //!     unsafe { renderer.prepare(cmd, scene, &View { camera, viewport }, &Settings::default())? };
-//! The host begins its render pass and draws its own geometry.
+//! // The host begins its render pass and draws its own geometry.
 //!     unsafe { renderer.draw(cmd) }
 //! }
 //! ```

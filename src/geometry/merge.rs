@@ -18,7 +18,7 @@ impl Surfels {
     /// weights are dropped unless all parts have them, because no value would fit the others.
     ///
     /// # Errors
-    /// [`Error::Usage`] for more than 2³² − 1 surfels, or more than [`Materials::MOST`] materials.
+    /// [`Error::Usage`] for more than 2³² − 1 surfels, or more than [`Materials::MOST`](super::Materials::MOST) materials.
     pub fn merge(parts: Vec<Self>, albedo: [f32; 3]) -> Result<Self> {
         Ok(Self::whole(Cloud::merge(parts.into_iter().map(Cloud::from).collect(), albedo)?))
     }

@@ -36,9 +36,9 @@ pub struct ExternalDevice<'a> {
     pub limits: DeviceLimits,
     /// Memory of the host; `None` uses the engine's allocator.
     pub memory: Option<Box<dyn MemorySource>>,
-    /// Like [`DeviceOptions::memory_blocks`], for the engine's allocator.
+    /// Like [`DeviceOptions::memory_blocks`](super::DeviceOptions::memory_blocks), for the engine's allocator.
     pub memory_blocks: MemoryBlocks,
-    /// Like [`DeviceOptions::pipeline_cache`].
+    /// Like [`DeviceOptions::pipeline_cache`](super::DeviceOptions::pipeline_cache).
     pub pipeline_cache: Option<PathBuf>,
 }
 

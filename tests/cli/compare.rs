@@ -170,7 +170,7 @@ fn unusable_pictures_are_named() {
     bad.save(program.path("bad.exr")).unwrap();
     for (arguments, code, cause) in [
         ("a.png small.png", 2, "the picture is 40x40 px and the truth 40x39"),
-        ("a.png text.png", 1, "text.png: no PNG, JPEG or EXR"),
+        ("a.png text.png", 1, "text.png: not a PNG, JPEG or EXR file"),
         ("missing.png a.png", 1, "missing.png: cannot read"),
         ("a.png bad.exr", 1, "bad.exr: 2 values are NaN or infinite, the first in pixel 3,2"),
         ("bad.exr a.png", 1, "bad.exr: 2 values"),

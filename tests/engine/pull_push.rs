@@ -244,7 +244,7 @@ fn numbers_are_those_of_points_beside_what_is_seen() {
     let scene = Scene::upload(&device, &surfels).unwrap();
     let refused =
         Renderer::new(&device, options).unwrap().render(&scene, &truth.camera(), &Settings::default());
-    assert!(refused.unwrap_err().to_string().contains("numbers of points"));
+    assert!(refused.unwrap_err().to_string().contains("point ids"));
     assert_silent(&device);
 }
 

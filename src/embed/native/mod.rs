@@ -21,7 +21,7 @@
 //! use surfel::vk::Device;
 //! use surfel::{Precision, Scene, Settings};
 //!
-//! Once. The host has attachments 0 (colour) and 1 (depth), a subpass for its meshes, and one for its glass.
+//! // Once. The host has attachments 0 (colour) and 1 (depth), a subpass for its meshes, and one for its glass.
 //! unsafe fn make(
 //!     host: &ash::Device,
 //!     device: &Arc<Device>,
@@ -48,12 +48,12 @@
 //!     unsafe { native::Renderer::new(device, plan, pass, 2) }
 //! }
 //!
-//! Each size. `depth` is a view of the depth aspect only.
+//! // Each size. `depth` is a view of the depth aspect only.
 //! unsafe fn resize(renderer: &mut native::Renderer, size: [u32; 2], [colour, depth]: [vk::ImageView; 2]) -> surfel::Result<Vec<vk::ImageView>> {
 //!     Ok([colour, depth].into_iter().chain(unsafe { renderer.resize(size, Some(depth))? }).collect())
 //! }
 //!
-//! Each frame. The engine's clear values follow the host's, too: `Plan::clear_values`.
+//! // Each frame. The engine's clear values follow the host's, too: `Plan::clear_values`.
 //! unsafe fn frame(
 //!     host: &ash::Device,
 //!     renderer: &mut native::Renderer,
