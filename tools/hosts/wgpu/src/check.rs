@@ -34,7 +34,7 @@ pub fn all() -> Result<()> {
         let own = own(&device, &settings)?;
         for samples in [1, 4] {
             let frame = Frame::new(&gpu, SIZE, samples);
-            let mut demo = Demo::new(&gpu, &Options::default(), samples)?;
+            let mut demo = Demo::new(&gpu, &Arguments::default(), samples)?;
             demo.settings = settings.clone();
             demo.embedded.attach(&frame)?;
             let mut shoot = |parts| shot(&gpu, &frame, &mut demo, parts);

@@ -53,13 +53,13 @@ impl Embedded {
         let device = gpu.external_device()?;
         let scene = upload(gpu, &device, surfels)?;
         // SAFETY: nothing of wgpu's is destroyed.
-        let (device, colour) = unsafe {
+        let (raw_device, colour) = unsafe {
             let device = gpu.device.as_hal::<Vulkan>().ok_or("wgpu does not use Vulkan")?;
             let adapter = gpu.adapter.as_hal::<Vulkan>().ok_or("wgpu does not use Vulkan")?;
             (device.raw_device().clone(), adapter.texture_format_as_raw(COLOUR))
         };
         let samples = vk::SampleCountFlags::from_raw(samples);
-        let pass = RawPass { raw: render_pass(&device, colour, samples)?, device };
+        let pass = RawPass { raw: render_pass(&raw_device, colour, samples)?, device: raw_device };
         let target = Target {
             pass: Pass::Subpass { pass: pass.raw, subpass: 0 },
             colours: vec![colour],
