@@ -224,6 +224,8 @@ uint turns_of(bool wanted, float nearest, out uint order) {
     }
     order = wanted ? lane << 3 * turn : 0;
     for (uint k = 0; k < 3; k++) order |= of_lane(order, lane ^ 1u << k);
+    // Lanes beyond the siblings go the same way.
+    if (LANES > FAN_OUT) order = of_lane(order, 0);
     return (1u << bitCount(team_ballot(wanted))) - 1u;
 }
 
