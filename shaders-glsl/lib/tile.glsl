@@ -4,7 +4,6 @@
 #include "lib/box.glsl"
 #include "lib/team.glsl"
 
-
 // Where the levels of the hierarchy of boxes begin: level 0 is of splats, a node of level 3 is a block of 512.
 layout(push_constant) uniform Hierarchy {
     uint starts[10];

@@ -1,6 +1,10 @@
-// A walk over the splats that meet the tile. The including file defines WALK, its name; WALK_STEPS, after how many
-// steps of its loops it ends wherever it is; WALK_BEHIND, the κ behind which nothing is wanted, which may rise as it goes; and WALK_TAKE(count, id), what becomes of a batch of `count` splats, at most LANES, of which
-// each lane has the `id` of one. Blocks of 512 splats come near to far, as far as the hierarchy tells, and splats within them by index.
+// Visits the splats whose boxes overlap the tile. The including file defines
+//   WALK: the name of the function;
+//   WALK_STEPS: the number of loop iterations after which it stops;
+//   WALK_BEHIND: inverse depth (κ) of the farthest visible surface; boxes behind it are skipped. It may rise during the walk;
+//   WALK_TAKE(count, id): processes a batch of `count` splats, at most LANES; each lane has the `id` of one;
+//   WALK_KEEP: optional; records the visited splats in met_list.
+// Blocks of 512 splats are visited near to far, splats within a block by index.
 //
 // Loops end by `do … while`, and nothing is skipped by `if`: lavapipe only masks that.
 

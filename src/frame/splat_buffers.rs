@@ -124,7 +124,7 @@ fn clip_stride(scene: &Scene, batches: &Batches) -> u64 {
 }
 
 /// Where the screen clips of each part begin, and where the last ends, bytes.
-pub fn clip_starts(scene: &Scene) -> Vec<u64> {
+fn clip_starts(scene: &Scene) -> Vec<u64> {
     let bytes = |clips: u64| (clips * size_of::<ScreenClip>() as u64).max(1).next_multiple_of(ALIGNMENT);
     let mut starts = vec![0];
     for clips in scene.clip_chunks().unwrap_or_default() {

@@ -214,11 +214,18 @@ impl SplatList {
     /// The steps that make its levels above so many splats, fine to coarse, as push constants.
     pub fn steps(&self, splats: u64) -> impl Iterator<Item = Level> {
         let written = if self.texels.is_some() { self.levels[0].boxes } else { 0 };
-        self.levels.windows(2).enumerate().map(move |(level, pair)| Level {
-            from: pair[0].start as u32,
-            to: (pair[1].start - written) as u32,
-            nodes: pair[1].boxes as u32,
-            finer: if level == 0 { splats.min(pair[0].boxes) } else { pair[0].boxes } as u32,
+        // A list may be longer than the frame needs: what is above no splat is neither made nor read.
+        let mut finer = splats;
+        self.levels.windows(2).map(move |pair| {
+            let nodes = finer.div_ceil(FAN_OUT).max(1).next_multiple_of(FAN_OUT);
+            let step = Level {
+                from: pair[0].start as u32,
+                to: (pair[1].start - written) as u32,
+                nodes: nodes as u32,
+                finer: finer as u32,
+            };
+            finer = nodes;
+            step
         })
     }
 }
