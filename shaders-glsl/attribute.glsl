@@ -24,34 +24,34 @@
 #include "lib/tile.glsl"
 #include "lib/tile_attribute.glsl"
 
-void store_sums(uint pixel, vec4 s0, vec4 s1) {
-    if (WIDE_SUMS0) for (uint k = 0; k < 4; k++) sums0[4 * pixel + k] = s0[k];
-    else sums0[pixel] = s0.x;
-    if (WIDE_SUMS1) for (uint k = 0; k < 4; k++) sums1[4 * pixel + k] = s1[k];
-    else if (SUM_DEPTH) sums1[pixel] = s1.x;
+void store_sums(uint index, vec4 s0, vec4 s1) {
+    if (WIDE_SUMS0) for (uint k = 0; k < 4; k++) sums0[4 * index + k] = s0[k];
+    else sums0[index] = s0.x;
+    if (WIDE_SUMS1) for (uint k = 0; k < 4; k++) sums1[4 * index + k] = s1[k];
+    else if (SUM_DEPTH) sums1[index] = s1.x;
 }
 
-void load_sums(uint pixel, out vec4 s0, out vec4 s1) {
+void load_sums(uint index, out vec4 s0, out vec4 s1) {
     s0 = s1 = vec4(0.0);
-    if (WIDE_SUMS0) for (uint k = 0; k < 4; k++) s0[k] = sums0[4 * pixel + k];
-    else s0.x = sums0[pixel];
-    if (WIDE_SUMS1) for (uint k = 0; k < 4; k++) s1[k] = sums1[4 * pixel + k];
-    else if (SUM_DEPTH) s1.x = sums1[pixel];
+    if (WIDE_SUMS0) for (uint k = 0; k < 4; k++) s0[k] = sums0[4 * index + k];
+    else s0.x = sums0[index];
+    if (WIDE_SUMS1) for (uint k = 0; k < 4; k++) s1[k] = sums1[4 * index + k];
+    else if (SUM_DEPTH) s1.x = sums1[index];
 }
 
 void main() {
     load_frame();
-    uvec2 low = tile_low();
+    uvec2 origin = tile_origin();
     for (uint r = 0; r < ROWS; r++) {
-        uvec2 at = low + lane_pixel(r);
-        if (goes_on()) load_sums(is_on_picture(at) ? pixel_index(ivec2(at)) : 0, tile_sums0[r], tile_sums1[r]);
-        depths[r] = is_on_picture(at) ? uintBitsToFloat(visibility[pixel_index(ivec2(at))]) : 0.0;
+        uvec2 pixel = origin + lane_pixel(r);
+        if (is_resumed()) load_sums(is_in_viewport(pixel) ? pixel_index(ivec2(pixel)) : 0, tile_sums0[r], tile_sums1[r]);
+        depths[r] = is_in_viewport(pixel) ? uintBitsToFloat(visibility[pixel_index(ivec2(pixel))]) : 0.0;
     }
-    met_count = MOST_MET + 1;
-    sum_attributes(low);
+    visited_count = MOST_VISITED + 1;
+    sum_attributes(origin);
     for (uint r = 0; r < ROWS; r++) {
-        uvec2 at = low + lane_pixel(r);
-        if (is_on_picture(at)) store_sums(pixel_index(ivec2(at)), tile_sums0[r], tile_sums1[r]);
+        uvec2 pixel = origin + lane_pixel(r);
+        if (is_in_viewport(pixel)) store_sums(pixel_index(ivec2(pixel)), tile_sums0[r], tile_sums1[r]);
     }
 }
 
@@ -60,33 +60,33 @@ void main() {
 #endif
 #ifdef VERTEX
 
-#include "lib/surface.glsl"
+#include "lib/surfel_attributes.glsl"
 #include "lib/surfel_weights.glsl"
 
 layout(location = 4) flat out float height;
-layout(location = 5) flat out vec3 first;
-layout(location = 6) flat out vec3 second;
+layout(location = 5) flat out vec3 attribute0;
+layout(location = 6) flat out vec3 attribute1;
 layout(location = 7) flat out vec4 corners;
 layout(location = 8) flat out vec4 square;
 
 void main() {
-    uint i = surfel_number();
+    uint i = surfel_index();
     Splat splat = splat_of(i);
     vec2 variance = attribute_variance(variance_of(splat));
-    place_splat(i, splat, variance, gl_VertexIndex % 3);
+    write_splat_vertex(i, splat, variance, gl_VertexIndex % 3);
     mat2 axes;
-    height = weight_of(i, splat, corners, axes);
+    height = surfel_weight(i, splat, corners, axes);
     if (!OVERLAP) height *= amplitude_of(splat, variance);
     square = vec4(axes[0], axes[1]);
-    surface_of(i, splat.epsilon, first, second);
+    surfel_attributes(i, splat.epsilon, attribute0, attribute1);
 }
 
 #endif
 #ifdef FRAGMENT
 
 layout(location = 4) flat in float height;
-layout(location = 5) flat in vec3 first;
-layout(location = 6) flat in vec3 second;
+layout(location = 5) flat in vec3 attribute0;
+layout(location = 6) flat in vec3 attribute1;
 layout(location = 7) flat in vec4 corners;
 layout(location = 8) flat in vec4 square;
 
@@ -96,12 +96,12 @@ layout(location = 1) out vec4 sum1;
 void main() {
     vec2 m;
     float key, rank;
-    drawn_fragment(m, key, rank);
+    evaluate_fragment(m, key, rank);
     float weight = OVERLAP ? 1.0 : height * kernel(dot(m, m));
-    if (CORNERS && !OVERLAP) weight *= weight_in(corners, mat2(square.xy, square.zw), m);
+    if (CORNERS && !OVERLAP) weight *= bilinear_weight(corners, mat2(square.xy, square.zw), m);
     gl_FragDepth = ranked(key, rank);
-    sum0 = weight * vec4(1.0, first);
-    sum1 = weight * vec4(SUM_DEPTH ? frame.key_gain * key : 0.0, second);
+    sum0 = weight * vec4(1.0, attribute0);
+    sum1 = weight * vec4(SUM_DEPTH ? frame.key_gain * key : 0.0, attribute1);
 }
 
 #endif

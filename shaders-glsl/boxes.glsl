@@ -1,4 +1,4 @@
-// Boxes: the next level of the hierarchy above the splats: the union of the boxes of eight neighbours, which Morton order keeps close.
+// Boxes: builds a level of the box hierarchy above the splats; a node bounds eight siblings, which Morton order keeps close together.
 #version 450
 #pragma variant SUBGROUPS COMPUTE
 #extension GL_GOOGLE_include_directive : require
@@ -15,26 +15,26 @@ layout(set = 1, binding = 6, std430) writeonly buffer Boxes { Box boxes[]; };
 layout(local_size_x = 64) in;
 
 layout(push_constant) uniform Level {
-    uint from;  // first box of the finer level
-    uint to;    // first box of this level, in what is bound to be written
-    uint nodes; // boxes of this level, with those that fill it up to a multiple of FAN_OUT
-    uint finer; // boxes of the finer level
+    uint finer_start; // first box of the finer level
+    uint start;       // first box of this level in the bound range
+    uint count;       // boxes of this level, padded to a multiple of FAN_OUT
+    uint finer_count; // boxes of the finer level
 } level;
 
 void main() {
     uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    if (i >= level.nodes) return;
+    if (i >= level.count) return;
     Box all_of = EMPTY_BOX;
-    uvec4 sides = uvec4(0xffff, 0xffff, 0, 0);
+    uvec4 bounds = uvec4(0xffff, 0xffff, 0, 0);
     uint nearest = 0;
     for (uint k = 0; k < FAN_OUT; k++) {
         uint child = FAN_OUT * i + k;
-        Box box = child < level.finer ? load_box(level.from + child) : EMPTY_BOX;
-        sides.xy = min(sides.xy, uvec2(box.x & 0xffffu, box.x >> 16));
-        sides.zw = max(sides.zw, uvec2(box.y & 0xffffu, box.y >> 16));
+        Box box = child < level.finer_count ? load_box(level.finer_start + child) : EMPTY_BOX;
+        bounds.xy = min(bounds.xy, uvec2(box.x & 0xffffu, box.x >> 16));
+        bounds.zw = max(bounds.zw, uvec2(box.y & 0xffffu, box.y >> 16));
         nearest = max(nearest, box.z);
     }
-    boxes[level.to + i] = Box(sides.x | sides.y << 16, sides.z | sides.w << 16, nearest, NO_CLIP);
+    boxes[level.start + i] = Box(bounds.x | bounds.y << 16, bounds.z | bounds.w << 16, nearest, NO_CLIP);
 }
 
 #endif

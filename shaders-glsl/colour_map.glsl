@@ -1,4 +1,4 @@
-// Colour map: a picture of numbers as the colours that a PNG has for them (src/formats/image/mod.rs).
+// Colour map: maps a scalar image to the colours of its PNG (src/formats/image/mod.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -11,13 +11,13 @@
 layout(constant_id = 6) const uint SHADING = 0;
 const uint NORMAL = 2, DEPTH = 3;
 
-layout(push_constant) uniform Numbers {
+layout(push_constant) uniform ScalarOptions {
     float least_alpha;
     uint opaque;
-} numbers;
+} options;
 
-layout(set = 0, binding = 0) uniform texture2D screen; // numbers times α, α
-layout(set = 0, binding = 1, std430) readonly buffer NumberRange {
+layout(set = 0, binding = 0) uniform texture2D screen; // scalar times α, α
+layout(set = 0, binding = 1, std430) readonly buffer ValueRange {
     uint least;
     uint greatest;
 } range;
@@ -25,28 +25,28 @@ layout(set = 0, binding = 2, std430) readonly buffer MapColours { uint map_colou
 
 layout(location = 0) out vec4 colour;
 
-// The number with these bits: range.glsl has the other way.
-float number_of(uint bits) {
+// Inverse of ordered_bits in range.glsl.
+float float_of_bits(uint bits) {
     return uintBitsToFloat((bits & 0x80000000u) != 0u ? bits & 0x7fffffffu : ~bits);
 }
 
-vec3 map_at(float share) {
+vec3 map_colour(float t) {
     int last = map_colours.length() - 1;
-    float place = clamp(share, 0.0, 1.0) * float(last);
-    int i = min(int(place), last - 1);
-    return mix(unpackUnorm4x8(map_colours[i]).rgb, unpackUnorm4x8(map_colours[i + 1]).rgb, place - float(i));
+    float position = clamp(t, 0.0, 1.0) * float(last);
+    int i = min(int(position), last - 1);
+    return mix(unpackUnorm4x8(map_colours[i]).rgb, unpackUnorm4x8(map_colours[i + 1]).rgb, position - float(i));
 }
 
-// sRGB codes, from 0 to 1.
+// sRGB codes of a value, from 0 to 1.
 vec3 codes_of(vec3 value) {
     if (SHADING == NORMAL) return 0.5 * value + 0.5;
-    float greatest = number_of(~range.greatest);
+    float greatest = float_of_bits(~range.greatest);
     if (SHADING == DEPTH) {
-        float least = number_of(range.least);
+        float least = float_of_bits(range.least);
         float scale = greatest > least ? 0.9 / (greatest - least) : 0.0;
         return vec3(1.0 - (value.x - least) * scale);
     }
-    return map_at(value.x / max(greatest, 1.0));
+    return map_colour(value.x / max(greatest, 1.0));
 }
 
 vec3 srgb_to_linear(vec3 c) {
@@ -54,11 +54,11 @@ vec3 srgb_to_linear(vec3 c) {
 }
 
 void main() {
-    vec4 seen = texelFetch(screen, ivec2(gl_FragCoord.xy), 0);
-    if (seen.a < numbers.least_alpha) discard;
-    vec3 shown = srgb_to_linear(clamp(codes_of(seen.rgb / seen.a), 0.0, 1.0));
-    float alpha = numbers.opaque != 0u ? 1.0 : seen.a;
-    colour = vec4(alpha * shown, alpha);
+    vec4 texel = texelFetch(screen, ivec2(gl_FragCoord.xy), 0);
+    if (texel.a < options.least_alpha) discard;
+    vec3 rgb = srgb_to_linear(clamp(codes_of(texel.rgb / texel.a), 0.0, 1.0));
+    float alpha = options.opaque != 0u ? 1.0 : texel.a;
+    colour = vec4(alpha * rgb, alpha);
 }
 
 #endif

@@ -1,4 +1,4 @@
-// Composite: the picture over a host's target, with the depth that the host's own surfaces have (src/embed/mod.rs).
+// Composite: blends the picture over the target of a host and writes its depth (src/embed/mod.rs).
 #version 450
 #pragma variant IMAGES FRAGMENT
 #pragma variant NORMALS FRAGMENT
@@ -18,7 +18,7 @@ layout(constant_id = 0) const bool PERSPECTIVE = true;
 #include "lib/host.glsl"
 
 layout(push_constant) uniform Composite {
-    ivec2 origin; // of the picture in the host's target, px
+    ivec2 origin; // of the picture in the target of the host, px
     uvec2 size;   // of the picture, px
     vec4 depth;   // see host_depth
 } composite;
@@ -30,7 +30,7 @@ layout(push_constant) uniform Composite {
 #define WITH_IDS
 #endif
 
-// The host's locations take the place of these.
+// The pipeline remaps these to the locations of the host.
 layout(location = 0) out vec4 out_image;
 #ifdef WITH_NORMALS
 layout(location = 1) out vec4 out_normal;
@@ -45,50 +45,50 @@ layout(set = 0, binding = 1) uniform texture2D picture_image;
 layout(set = 0, binding = 2) uniform texture2D normal_image;
 layout(set = 0, binding = 3) uniform texture2D depth_image;
 
-vec4 image_at(ivec2 at) { return texelFetch(picture_image, at, 0); }
-vec3 normal_at(ivec2 at) { return texelFetch(normal_image, at, 0).xyz; }
-float depth_at(ivec2 at) { return texelFetch(depth_image, at, 0).r; }
+vec4 image_at(ivec2 pixel) { return texelFetch(picture_image, pixel, 0); }
+vec3 normal_at(ivec2 pixel) { return texelFetch(normal_image, pixel, 0).xyz; }
+float depth_at(ivec2 pixel) { return texelFetch(depth_image, pixel, 0).r; }
 
 #else
 
-layout(set = 0, binding = 0, std430) readonly buffer FramePicture { uint picture[]; }; // floats: colour, then normals, then depths; then numbers
+layout(set = 0, binding = 0, std430) readonly buffer FramePicture { uint picture[]; }; // floats: colours, then normals, then depths; then ids
 
-uint pixel(ivec2 at) { return uint(at.y) * composite.size.x + uint(at.x); }
-uint pixels() { return composite.size.x * composite.size.y; }
+uint pixel_index(ivec2 pixel) { return uint(pixel.y) * composite.size.x + uint(pixel.x); }
+uint pixel_count() { return composite.size.x * composite.size.y; }
 
-vec4 image_at(ivec2 at) {
-    uint i = 4 * pixel(at);
+vec4 image_at(ivec2 pixel) {
+    uint i = 4 * pixel_index(pixel);
     return uintBitsToFloat(uvec4(picture[i], picture[i + 1], picture[i + 2], picture[i + 3]));
 }
 
-vec3 normal_at(ivec2 at) {
-    uint i = 4 * pixels() + 3 * pixel(at);
+vec3 normal_at(ivec2 pixel) {
+    uint i = 4 * pixel_count() + 3 * pixel_index(pixel);
     return uintBitsToFloat(uvec3(picture[i], picture[i + 1], picture[i + 2]));
 }
 
 #ifdef WITH_NORMALS
-const uint DEPTHS = 7;
+const uint DEPTH_START = 7;
 #else
-const uint DEPTHS = 4;
+const uint DEPTH_START = 4;
 #endif
 
-float depth_at(ivec2 at) { return uintBitsToFloat(picture[DEPTHS * pixels() + pixel(at)]); }
-uint id_at(ivec2 at) { return picture[(DEPTHS + (HOST_DEPTH ? 1 : 0)) * pixels() + pixel(at)]; }
+float depth_at(ivec2 pixel) { return uintBitsToFloat(picture[DEPTH_START * pixel_count() + pixel_index(pixel)]); }
+uint id_at(ivec2 pixel) { return picture[(DEPTH_START + (HOST_DEPTH ? 1 : 0)) * pixel_count() + pixel_index(pixel)]; }
 
 #endif
 
 void main() {
-    ivec2 at = ivec2(gl_FragCoord.xy) - composite.origin;
-    vec4 seen = image_at(at);
-    if (seen.a == 0.0) discard;
-    out_image = over_host(seen);
+    ivec2 pixel = ivec2(gl_FragCoord.xy) - composite.origin;
+    vec4 colour = image_at(pixel);
+    if (colour.a == 0.0) discard;
+    out_image = over_host(colour);
 #ifdef WITH_NORMALS
-    out_normal = vec4(normal_at(at), 1.0);
+    out_normal = vec4(normal_at(pixel), 1.0);
 #endif
 #ifdef WITH_IDS
-    out_id = id_at(at);
+    out_id = id_at(pixel);
 #endif
-    if (HOST_DEPTH) gl_FragDepth = host_depth(composite.depth, depth_at(at));
+    if (HOST_DEPTH) gl_FragDepth = host_depth(composite.depth, depth_at(pixel));
 }
 
 #endif

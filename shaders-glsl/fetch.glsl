@@ -1,12 +1,12 @@
-// Fetch: each pixel of level 0 takes what its nearest point is: of a surfel, a segment (LINES) or a triangle (TRIANGLES). Surfels alone may
-// have been drawn (DRAWN_POINTS).
+// Fetch: writes the samples of level 0 from the nearest point of each pixel, which is of a surfel, a segment (LINES) or a triangle
+// (TRIANGLES). With RASTER_POINTS the points of surfels come from the raster path.
 #version 450
 #pragma variant LINES
 #pragma variant TRIANGLES
-#pragma variant DRAWN_POINTS
+#pragma variant RASTER_POINTS
 #extension GL_GOOGLE_include_directive : require
 #ifdef COMPUTE
-#ifdef DRAWN_POINTS
+#ifdef RASTER_POINTS
 #extension GL_EXT_samplerless_texture_functions : require
 #else
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -14,18 +14,18 @@
 
 #include "lib/instance.glsl"
 #include "lib/sums.glsl"
-#define SAMPLES_ONLY
+#define LEVEL_0_ONLY
 #include "lib/pyramid.glsl"
 #include "lib/lens.glsl"
-#ifdef DRAWN_POINTS
-#include "lib/drawn_points.glsl"
+#ifdef RASTER_POINTS
+#include "lib/raster_points.glsl"
 #else
 #define NEAREST_ACCESS readonly
 #include "lib/nearest_points.glsl"
 #endif
 
 PYRAMID(2, to, writeonly)
-STORED(to)
+DEFINE_STORE(to)
 
 layout(local_size_x = 64) in;
 
@@ -34,19 +34,19 @@ layout(local_size_x = 64) in;
 #include "lib/primitives.glsl"
 #include "lib/line.glsl"
 
-// The first strand with this point: the same arithmetic that found it finds it again.
-Sample sample_of(uint i, ivec2 at, uint nearest) {
+// The sample of the first strand with this point. Repeats the arithmetic of project, so that the results are equal.
+Sample sample_of(uint i, ivec2 pixel, uint nearest) {
     Segment segment;
     segment_of(i, segment);
     for (int k = 0; k < segment.strands; k++) {
         Strand strand;
-        Place place;
-        if (!strand_of(segment, k, strand) || !place_of(segment, strand, at[strand.steep], place)) continue;
+        StrandPoint point;
+        if (!strand_of(segment, k, strand) || !strand_point(segment, strand, pixel[strand.steep], point)) continue;
         ivec2 columns = columns_of(strand);
-        bool reached = at[strand.steep] >= columns.x && at[strand.steep] <= columns.y;
-        if (reached && place.at == at && floatBitsToUint(world_distance(place.nearest)) == nearest) return sample_at(segment, strand, place);
+        bool in_range = pixel[strand.steep] >= columns.x && pixel[strand.steep] <= columns.y;
+        if (in_range && point.pixel == pixel && floatBitsToUint(world_distance(point.nearest)) == nearest) return sample_at(segment, strand, point);
     }
-    return NOTHING;
+    return NO_SAMPLE;
 }
 
 #elif defined(TRIANGLES)
@@ -54,33 +54,33 @@ Sample sample_of(uint i, ivec2 at, uint nearest) {
 #include "lib/primitives.glsl"
 #include "lib/triangle.glsl"
 
-Sample sample_of(uint i, ivec2 at, uint nearest) {
+Sample sample_of(uint i, ivec2 pixel, uint nearest) {
     Triangle triangle;
     triangle_of(i, triangle);
     vec3 weights;
     float distance;
-    weights_at(triangle, at, weights, distance);
-    return sample_at(triangle, at, weights, INSTANCED ? distance : uintBitsToFloat(nearest));
+    weights_at(triangle, pixel, weights, distance);
+    return sample_at(triangle, pixel, weights, INSTANCED ? distance : uintBitsToFloat(nearest));
 }
 
 #else
 
-#include "lib/surface.glsl"
+#include "lib/surfel_attributes.glsl"
 #include "lib/point.glsl"
 
-Sample sample_of(uint i, ivec2 at, uint nearest) {
+Sample sample_of(uint i, ivec2 pixel, uint nearest) {
     Point point;
     point_of(i, point);
     float radius = radius_of(i);
-    // A disc of the ellipse's area.
+    // A circle of the ellipse's area.
     if (ELLIPSES) radius *= sqrt(ellipse_of(i).w);
     vec3 normal = normal_of(i);
-    Sample s = NOTHING;
+    Sample s = NO_SAMPLE;
     s.near = s.depth = point.distance;
     s.far = point.distance + (PAPER ? 1.0 : 2.0) * radius;
     s.radius = focal_scale() * radius / (PERSPECTIVE ? point.distance : 1.0);
     s.displacement = PAPER ? vec2(0.0) : point.offset;
-    // Seen from behind, a disc is that of the opposite normal.
+    // Seen from behind, a disc has the opposite normal.
     s.normal = point.facing > 0.0 ? -normal : normal;
     s.colour = colour_of(i);
     if (TEXTURE) s.coordinates = coordinates_of(i);
@@ -89,26 +89,26 @@ Sample sample_of(uint i, ivec2 at, uint nearest) {
 
 #endif
 
-// A sample of the scene's as the scenes share it.
-Sample shared_sample(Sample s) {
+// Transforms a sample from scene space to world space.
+Sample to_world_sample(Sample s) {
     if (!INSTANCED || s.near == 0.0) return s;
     s.near = world_distance(s.near);
     s.far *= view.scale;
     s.depth *= view.scale;
-    s.normal = in_world(s.normal);
+    s.normal = to_world(s.normal);
     return s;
 }
 
-// What is nearest at a pixel, and the bits of its distance; false where nothing is.
-bool nearest_at(uint pixel, ivec2 at, out uint number, out uint nearest) {
-#ifdef DRAWN_POINTS
+// Reads the id and the bits of the distance of the nearest point of a pixel; false if the pixel has none.
+bool nearest_at(uint index, ivec2 pixel, out uint id, out uint nearest) {
+#ifdef RASTER_POINTS
     float distance;
-    bool there = drawn_point(at, number, distance);
+    bool found = raster_point(pixel, id, distance);
     nearest = floatBitsToUint(distance);
-    return there;
+    return found;
 #else
-    uint64_t point = nearest_points[pixel];
-    number = uint(point & 0xffffffffu);
+    uint64_t point = nearest_points[index];
+    id = uint(point & 0xffffffffu);
     nearest = uint(point >> 32);
     return point != NO_POINT;
 #endif
@@ -116,16 +116,16 @@ bool nearest_at(uint pixel, ivec2 at, out uint number, out uint nearest) {
 
 void main() {
     uvec2 size = uvec2(frame.viewport);
-    uint pixel = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    if (pixel >= size.x * size.y) return;
-    ivec2 at = ivec2(pixel % size.x, pixel / size.x);
-    uint number, nearest;
-    if (!nearest_at(pixel, at, number, nearest)) {
-        if (first_number() == 0) store_to(pixel, NOTHING);
-    } else if (number - first_number() < window.count) {
-        Sample s = shared_sample(sample_of(number - first_number(), at, nearest));
-        s.id = number;
-        store_to(pixel, s);
+    uint index = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    if (index >= size.x * size.y) return;
+    ivec2 pixel = ivec2(index % size.x, index / size.x);
+    uint id, nearest;
+    if (!nearest_at(index, pixel, id, nearest)) {
+        if (first_id() == 0) store_to(index, NO_SAMPLE);
+    } else if (id - first_id() < chunk.count) {
+        Sample s = to_world_sample(sample_of(id - first_id(), pixel, nearest));
+        s.id = id;
+        store_to(index, s);
     }
 }
 

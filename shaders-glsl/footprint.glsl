@@ -1,4 +1,4 @@
-// Footprint: each surfel becomes a splat, the image of its disc, and is culled and counted here (zwicker2004 §4).
+// Footprint: projects each surfel to a splat, culls it and counts cull reasons (zwicker2004 §4).
 #version 450
 #pragma variant TILES COMPUTE
 #extension GL_GOOGLE_include_directive : require
@@ -10,7 +10,7 @@
 #ifdef TILES
 #include "lib/box.glsl"
 #include "lib/sums.glsl"
-#include "lib/surface.glsl"
+#include "lib/surfel_attributes.glsl"
 #include "lib/surfel_weights.glsl"
 #include "lib/attributes.glsl"
 #else
@@ -26,11 +26,11 @@
 layout(local_size_x = 64) in;
 
 layout(constant_id = 1) const bool CULL_BACK = false;
-layout(constant_id = 21) const bool MOVED = false; // splats are of discs moved away from the eye along the camera's axis, by ε
+layout(constant_id = 21) const bool MOVED = false; // splats of discs moved away from the eye by ε along the camera's axis
 
-// Least q, relative to (w / F)²: nearer the eye plane q has lost the digits that tell where the ellipse is.
+// Least q, relative to (w / F)²: nearer to the eye plane, rounding destroys the ellipse's position.
 const float LEAST_CLEARANCE = 1e-3;
-// Least √|V|, px², whose weight is surely above 0: less would hide what is behind and show nothing.
+// Least √|V|, px², whose weight is above 0: a smaller splat would occlude and contribute nothing.
 const float LEAST_AREA = 1e-30;
 // Largest variance, px².
 const float LARGEST_VARIANCE = 1e30;
@@ -43,13 +43,13 @@ mat2x3 tangents(vec3 n) {
     return mat2x3(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y));
 }
 
-// The axes of an elliptical disc whose longer semi-axis is 1, exactly at a right angle to n however its shape was rounded.
+// Axes of an elliptical disc whose longer semi-axis is 1. They are orthogonal to n even if the stored shape is rounded.
 mat2x3 ellipse_axes(vec3 n, vec4 shape) {
     vec3 minor = normalize(cross(n, shape.xyz));
     return mat2x3(cross(minor, n), shape.w * minor);
 }
 
-// κ of the plane n·x = h at the anchor and its derivatives. Seen at a grazing angle, κ is a small difference of large terms.
+// κ of the plane n·x = h at the anchor, and its derivatives. At grazing angles κ is a small difference of large terms.
 mat2x3 depth_plane(vec3 n, vec2 h, vec2 facing, vec2 anchor) {
     vec2 x = dot_double(n, vec3(0.0), view.ray_hi[0].xyz, view.ray_lo[0].xyz);
     vec2 y = dot_double(n, vec3(0.0), view.ray_hi[1].xyz, view.ray_lo[1].xyz);
@@ -62,14 +62,14 @@ mat2x3 depth_plane(vec3 n, vec2 h, vec2 facing, vec2 anchor) {
     return mat2x3(vec3(key.x, x.x, y.x), vec3(key.y, x.y, y.y));
 }
 
-// κ of a disc's nearest point, which is `lean` nearer than its centre at `position`; in perspective that is at distance w.
+// κ of a disc's nearest point, which is `lean` nearer than its centre `position` at distance w.
 float key_of_disc(float w, vec3 position, float lean) {
     if (PERSPECTIVE) return view.near / (w - lean);
     float z = dot(view.forward_hi.xyz, position) - lean;
     return 1.0 - (z - view.near) * view.key_slope;
 }
 
-// κ of a plane that is not the tangent plane, or its distance where that is linear, at the anchor and its derivatives; `to_centre` is px.
+// κ (has_linear_depth: distance) at the anchor, and its derivatives, of a plane that is not the tangent plane; `to_centre` is in px.
 mat2x3 flat_plane(Disc disc, vec2 slope, vec2 to_centre) {
     vec2 value = has_linear_depth() ? disc.w : vec2(view.near / disc.w.x, 0.0);
     if (!PERSPECTIVE) {
@@ -81,11 +81,11 @@ mat2x3 flat_plane(Disc disc, vec2 slope, vec2 to_centre) {
     return mat2x3(vec3(value.x, slope), vec3(value.y, 0.0, 0.0));
 }
 
-// Where a line of the tangent plane, outward·(x − centre) = offset, is on the screen: see ScreenClip. Near the line its value is a small
+// Projects a line of the tangent plane, outward·(x − centre) = offset, to the screen: see ScreenClip. Near the line the value is a small
 // difference of large terms.
-vec4 screen_line(Disc disc, vec2 anchor, vec3 outward, float offset) {
+vec4 project_clip_line(Disc disc, vec2 anchor, vec3 outward, float offset) {
     if (outward == vec3(0.0)) return NO_LINE;
-    // The plane's and the half-space's n·x = h, and what they make of the rays: values at the anchor and derivatives along x and y.
+    // n·x = h of plane and half space, and their products with the rays: values at the anchor, derivatives along x and y.
     vec2 reach = add(vec2(offset, 0.0), dot_double(disc.hi, disc.lo, outward, vec3(0.0)));
     vec2 plane[3], half_space[3];
     for (int i = 0; i < 3; i++) {
@@ -94,10 +94,10 @@ vec4 screen_line(Disc disc, vec2 anchor, vec3 outward, float offset) {
     }
     plane[2] = add(plane[2], add(scale(plane[0], anchor.x), scale(plane[1], anchor.y)));
     half_space[2] = add(half_space[2], add(scale(half_space[0], anchor.x), scale(half_space[1], anchor.y)));
-    // On a ray that meets the plane at h / n·ray, outward·x ≤ reach is reach n·ray − h outward·ray ≥ 0 for h > 0.
+    // For h > 0, a ray that meets the plane at h / n·ray satisfies outward·x ≤ reach where reach n·ray − h outward·ray ≥ 0.
     vec2 of_plane = reach, of_half_space = disc.h;
     if (!PERSPECTIVE) {
-        // Parallel rays differ in where they begin, not in where they go.
+        // Parallel rays share a direction and differ in origin.
         of_plane = dot_double(outward, vec3(0.0), view.forward_hi.xyz, view.forward_lo.xyz);
         of_half_space = disc.facing;
         plane[2] = add(plane[2], -scale(disc.h, view.key_slope));
@@ -112,22 +112,22 @@ vec4 screen_line(Disc disc, vec2 anchor, vec3 outward, float offset) {
     return slope > 0.0 ? vec4(sign_of_h / slope * line, 0.0) : NO_LINE;
 }
 
-// Writes the clip of surfel i, whose splat has this anchor.
-void clip_splat(uint i, Disc disc, vec2 anchor) {
-    uint number = clip_number(i);
-    if (!has_clip(number)) return;
+// Writes the screen-space clip of surfel i, whose splat has this anchor.
+void store_screen_clip(uint i, Disc disc, vec2 anchor) {
+    uint index = clip_index(i);
+    if (!has_clip(index)) return;
     vec4 lines[2];
     for (uint k = 0; k < 2; k++) {
-        uint at = window.capacity + 8 * number + 4 * k;
+        uint at = chunk.capacity + 8 * index + 4 * k;
         vec3 outward = uintBitsToFloat(uvec3(clips[at], clips[at + 1], clips[at + 2]));
-        lines[k] = screen_line(disc, anchor, outward, uintBitsToFloat(clips[at + 3]));
+        lines[k] = project_clip_line(disc, anchor, outward, uintBitsToFloat(clips[at + 3]));
     }
     lines[0].w = (clips[i] & CONCAVE) != 0u ? 1.0 : 0.0;
-    screen_clips[screen_clip_number(i)] = ScreenClip(lines[0], lines[1]);
+    screen_clips[screen_clip_index(i)] = ScreenClip(lines[0], lines[1]);
 }
 
-// Reads surfel i and what becomes of it before its image is known.
-uint disc_of(uint i, out Disc disc) {
+// Loads surfel i relative to the eye; returns the cull reason so far.
+uint load_disc(uint i, out Disc disc) {
     if (!is_valid(i)) return INVALID;
     vec3 p = position_of(i), n = normal_of(i);
     float r = radius_of(i);
@@ -138,8 +138,8 @@ uint disc_of(uint i, out Disc disc) {
     disc.major = shape.xyz;
     disc.axes = ELLIPSES ? ellipse_axes(n, shape) : tangents(n);
 
-    // The position relative to the eye, its homogeneous pixel and its plane's h = n·position in twice the precision: all that
-    // follows is relative to them.
+    // Position relative to the eye, homogeneous pixel and the plane's h = n·position, in twice the precision: everything below is relative
+    // to these.
     vec2 dx = two_sum(p.x, -view.eye_hi.x), dy = two_sum(p.y, -view.eye_hi.y), dz = two_sum(p.z, -view.eye_hi.z);
     if (MOVED) {
         vec3 back = frame.epsilon * r * view.forward_hi.xyz;
@@ -150,14 +150,14 @@ uint disc_of(uint i, out Disc disc) {
     disc.hi = vec3(dx.x, dy.x, dz.x);
     disc.lo = vec3(dx.y, dy.y, dz.y) - view.eye_lo.xyz;
     disc.w = PERSPECTIVE ? pixel_row(2, disc.hi, disc.lo) : vec2(1.0, 0.0);
-    // Tests are such that a coordinate which is no number fails them.
+    // Written so that NaN fails the test.
     if (!(disc.w.x > 0.0)) return BEHIND;
     disc.h = dot_double(disc.hi, disc.lo, n, vec3(0.0));
     disc.facing = PERSPECTIVE ? disc.h : dot_double(n, vec3(0.0), view.forward_hi.xyz, view.forward_lo.xyz);
     return DRAWN;
 }
 
-// The ellipse's centre relative to the anchor, px, with no more than the last rounding.
+// Centre of the ellipse relative to the anchor, px, rounded once.
 vec2 fine_offset(Disc disc, Conic conic, vec2 anchor) {
     vec2 x = divide(add(disc.x, scale(disc.w, -anchor.x)), disc.w);
     vec2 y = divide(add(disc.y, scale(disc.w, -anchor.y)), disc.w);
@@ -166,7 +166,7 @@ vec2 fine_offset(Disc disc, Conic conic, vec2 anchor) {
 
 uint footprint(uint i, out Splat splat) {
     Disc disc;
-    uint reason = disc_of(i, disc);
+    uint reason = load_disc(i, disc);
     if (reason != DRAWN) return reason;
     float sigma = disc.radius / frame.cutoff;
     vec3 S = sigma * to_pixel(disc.axes[0]);
@@ -178,20 +178,20 @@ uint footprint(uint i, out Splat splat) {
     disc.x = pixel_row(0, disc.hi, disc.lo);
     disc.y = pixel_row(1, disc.hi, disc.lo);
     Image image = image_of(disc, sigma, S, T);
-    vec2 reach = most_reach() * reach_of(image.conic.axis, attribute_variance(image.conic.variance));
-    vec2 middle = vec2(disc.x.x, disc.y.x) / disc.w.x + image.conic.offset;
-    bool inside = all(lessThanEqual(middle - reach, frame.viewport)) && all(greaterThanEqual(middle + reach, vec2(0.0)));
+    vec2 reach = largest_stretch() * half_extent(image.conic.axis, attribute_variance(image.conic.variance));
+    vec2 centre = vec2(disc.x.x, disc.y.x) / disc.w.x + image.conic.offset;
+    bool inside = all(lessThanEqual(centre - reach, frame.viewport)) && all(greaterThanEqual(centre + reach, vec2(0.0)));
     if (!inside || !(image.sqrt_det >= LEAST_AREA)) return OUTSIDE;
     if (!(image.conic.variance.x <= LARGEST_VARIANCE)) return INVALID;
 
-    uvec2 pixel = uvec2(clamp(middle, vec2(0.0), frame.viewport - 1.0));
+    uvec2 pixel = uvec2(clamp(centre, vec2(0.0), frame.viewport - 1.0));
     vec2 anchor = vec2(pixel) + 0.5;
     vec2 to_centre = vec2(add(disc.x, scale(disc.w, -anchor.x)).x, add(disc.y, scale(disc.w, -anchor.y)).x) / disc.w.x;
     splat.offset = CONFETTI ? fine_offset(disc, image.conic, anchor) : to_centre + image.conic.offset;
     splat.axis = image.conic.axis;
     splat.variance = image.conic.variance.x;
-    splat.turn = image.conic.turn;
-    splat.place = place_of(pixel);
+    splat.axis_residual = image.conic.axis_residual;
+    splat.anchor = pack_anchor(pixel);
     float epsilon = MOVED ? 0.0 : frame.epsilon * disc.radius;
     splat.epsilon = PERSPECTIVE ? disc.w.x / (disc.w.x + epsilon) : view.key_slope * epsilon;
     if (disc.facing.x > 0.0) splat.epsilon = -splat.epsilon;
@@ -199,7 +199,7 @@ uint footprint(uint i, out Splat splat) {
     mat2x3 plane = tangent ? depth_plane(disc.normal, disc.h, disc.facing, anchor) : flat_plane(disc, image.slope, to_centre);
     splat.plane_hi = plane[0];
     splat.plane_lo = plane[1];
-    clip_splat(i, disc, anchor);
+    store_screen_clip(i, disc, anchor);
     splat.sqrt_det = image.sqrt_det;
     splat.key_disc = key_of_disc(disc.w.x, disc.hi, image.lean);
     return DRAWN;
@@ -207,75 +207,75 @@ uint footprint(uint i, out Splat splat) {
 
 #ifdef TILES
 
-// For tiles splats come with boxes, and with all that sums take of surfels.
+// The tile path needs bounding boxes of splats and the attributes that sums read.
 layout(set = 0, binding = 19, std430) writeonly buffer SplatBoxes { Box splat_boxes[]; };
 layout(set = 0, binding = 7, std430) writeonly buffer SplatAttributes { vec4 splat_attributes[]; };
 
-// The pixels that surfel i's splat can have fragments at.
+// Bounding box of the fragments of surfel i's splat.
 Box box_of_splat(uint i, Splat splat) {
     vec2 variance = attribute_variance(variance_of(splat));
     float stretch = stretch_of(splat, variance, centre_key(splat.plane_hi, splat.plane_lo, splat.offset));
-    vec2 reach = stretch * reach_of(splat.axis, variance);
-    vec2 first = anchor_of(splat) + splat.offset - 0.5;
-    ivec2 low = ivec2(max(ceil(first - reach), vec2(0.0)));
-    ivec2 high = ivec2(min(floor(first + reach), frame.viewport - 1.0));
+    vec2 reach = stretch * half_extent(splat.axis, variance);
+    vec2 attribute0 = anchor_of(splat) + splat.offset - 0.5;
+    ivec2 low = ivec2(max(ceil(attribute0 - reach), vec2(0.0)));
+    ivec2 high = ivec2(min(floor(attribute0 + reach), frame.viewport - 1.0));
     float nearest = nearest_of(splat, variance, stretch);
     if (any(greaterThan(low, high)) || nearest <= frame.key_far) return EMPTY_BOX;
-    uint clip = screen_clip_number(i);
-    return box_of(low, high, nearest, has_clip(clip) ? window.first_clip + clip : NO_CLIP);
+    uint clip = screen_clip_index(i);
+    return box_of(low, high, nearest, has_clip(clip) ? chunk.first_clip + clip : NO_CLIP);
 }
 
 void store_attributes(uint i, Splat splat) {
-    uint k = window.attribute_rows * splat_number(i);
+    uint k = chunk.attribute_rows * splat_index(i);
     vec4 corners;
     mat2 square;
-    vec3 first, second;
-    float weight = weight_of(i, splat, corners, square);
-    surface_of(i, splat.epsilon, first, second);
-    if (WIDE_SUMS0 || FRAME_WEIGHTS) splat_attributes[k] = vec4(first, weight);
-    if (WIDE_SUMS1) splat_attributes[k + 1] = vec4(second, 0.0);
+    vec3 attribute0, attribute1;
+    float weight = surfel_weight(i, splat, corners, square);
+    surfel_attributes(i, splat.epsilon, attribute0, attribute1);
+    if (WIDE_SUMS0 || FRAME_WEIGHTS) splat_attributes[k] = vec4(attribute0, weight);
+    if (WIDE_SUMS1) splat_attributes[k + 1] = vec4(attribute1, 0.0);
     if (FRAME_CORNERS) {
         splat_attributes[k + ATTRIBUTE_ROWS - 2] = corners;
         splat_attributes[k + ATTRIBUTE_ROWS - 1] = vec4(square[0], -square[1].x * square[0].y + square[1].y * square[0].x, 0.0);
     }
 }
 
-// Stores what surfel i becomes, in the order of surfels, so that neighbours stay neighbours.
+// Stores the result of surfel i at its own index, so that neighbours stay neighbours.
 void store(uint i, uint reason, Splat splat) {
-    uint number = splat_number(i);
-    splat_boxes[number] = reason == DRAWN ? box_of_splat(i, splat) : EMPTY_BOX;
+    uint index = splat_index(i);
+    splat_boxes[index] = reason == DRAWN ? box_of_splat(i, splat) : EMPTY_BOX;
     if (reason == DRAWN) {
         store_attributes(i, splat);
-        // Distances as in the frame: in the world's unit.
+        // Frame lists hold distances in the world's unit.
         if (INSTANCED && has_linear_depth()) scale_plane(view.scale, splat.plane_hi, splat.plane_lo);
-        store_splat(number, splat);
+        store_splat(index, splat);
     } else {
-        store_no_splat(number);
+        store_culled(index);
     }
 }
 
-// Whether there is a surfel i. What the list has room for beside is empty.
-bool is_there(uint i) {
-    bool there = i < window.count && instance_number() < window.present;
-    if (!there && i < window.room) splat_boxes[splat_number(i)] = EMPTY_BOX;
-    return there;
+// Whether surfel i exists. Marks the padding of the list as empty.
+bool has_surfel(uint i) {
+    bool exists = i < chunk.count && instance_index() < chunk.instance_count;
+    if (!exists && i < chunk.instance_stride) splat_boxes[splat_index(i)] = EMPTY_BOX;
+    return exists;
 }
 
 #else
 
 void store(uint i, uint reason, Splat splat) {
-    store_splat(splat_number(i), splat);
+    store_splat(splat_index(i), splat);
 }
 
-bool is_there(uint i) {
-    return i < window.count;
+bool has_surfel(uint i) {
+    return i < chunk.count;
 }
 
 #endif
 
 void main() {
     uint i = gl_GlobalInvocationID.x;
-    if (!is_there(i)) return;
+    if (!has_surfel(i)) return;
     Splat splat = Splat(vec2(0.0), vec2(1.0, 0.0), 1.0, 0.0, 0, 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
     uint reason = footprint(i, splat);
     store(i, reason, splat);

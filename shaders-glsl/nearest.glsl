@@ -1,4 +1,4 @@
-// Nearest: the nearest splat of each pixel, alone and whole: one pass, nothing is blended (zwicker2004 table 1; botsch2003 §3.2).
+// Nearest: shows the nearest splat of each pixel without blending, in one pass (zwicker2004 table 1; botsch2003 §3.2).
 #version 450
 #pragma variant COVERAGE VERTEX FRAGMENT
 #pragma variant CLIP_LINES VERTEX FRAGMENT
@@ -19,54 +19,54 @@
 
 #ifdef COMPUTE
 
-// What a dispatch leaves for the next, where there are several: the depth of each pixel, and the number of its splat.
+// State between the dispatches of a sliced frame: depth of each pixel, index of its splat, coverage.
 #define VISIBILITY_ACCESS
 #define SUMS_ACCESS
 #include "lib/pixels.glsl"
 layout(set = 1, binding = 5, std430) buffer Coverage { uint coverage[]; };
 
-#define ALONE
+#define NEAREST_SPLAT
 #include "lib/tile.glsl"
 #include "lib/tile_visibility.glsl"
 #include "lib/tile_coverage.glsl"
 #include "lib/attributes.glsl"
 
-// The pixel at `at`, which shows splat `id` alone, as if that were all that its sums held.
-Pixel pixel_of(uvec2 at, bool visible, uint id, float alpha) {
+// Output of a pixel that shows splat `id` only.
+Pixel pixel_of(uvec2 coordinates, bool visible, uint id, float alpha) {
     Splat splat = splat_of(id);
-    Attributes own = attributes_of(id);
-    vec2 centre = vec2(at) + 0.5;
+    Attributes attributes = attributes_of(id);
+    vec2 centre = vec2(coordinates) + 0.5;
     float key = plane_at(splat.plane_hi, splat.plane_lo, centre - anchor_of(splat));
     if (has_linear_depth()) key = frame.near / key;
-    return normalize_pixel(centre, visible, alpha, vec4(1.0, own.first), vec4(frame.key_gain * key, own.second));
+    return normalize_pixel(centre, visible, alpha, vec4(1.0, attributes.attribute0), vec4(frame.key_gain * key, attributes.attribute1));
 }
 
 void main() {
     load_frame();
-    uvec2 low = tile_low();
+    uvec2 origin = tile_origin();
     for (uint r = 0; r < ROWS; r++) {
-        uvec2 at = low + lane_pixel(r);
-        uint pixel = is_on_picture(at) ? pixel_index(ivec2(at)) : 0;
-        if (goes_on()) depths[r] = uintBitsToFloat(visibility[pixel]);
-        if (goes_on()) winners[r] = floatBitsToUint(sums0[pixel]);
-        if (goes_on() && COVERAGE) covered[r] = coverage[pixel];
+        uvec2 coordinates = origin + lane_pixel(r);
+        uint pixel = is_in_viewport(coordinates) ? pixel_index(ivec2(coordinates)) : 0;
+        if (is_resumed()) depths[r] = uintBitsToFloat(visibility[pixel]);
+        if (is_resumed()) nearest_splats[r] = floatBitsToUint(sums0[pixel]);
+        if (is_resumed() && COVERAGE) coverage_masks[r] = coverage[pixel];
     }
-    find_visible(low);
-    if (COVERAGE) find_covered(low);
+    compute_visibility(origin);
+    if (COVERAGE) compute_coverage(origin);
     for (uint r = 0; r < ROWS; r++) {
-        uvec2 at = low + lane_pixel(r);
-        if (!SLICED || !is_on_picture(at)) continue;
-        uint pixel = pixel_index(ivec2(at));
+        uvec2 coordinates = origin + lane_pixel(r);
+        if (!SLICED || !is_in_viewport(coordinates)) continue;
+        uint pixel = pixel_index(ivec2(coordinates));
         visibility[pixel] = floatBitsToUint(depths[r]);
-        sums0[pixel] = uintBitsToFloat(winners[r]);
-        if (COVERAGE) coverage[pixel] = covered[r];
+        sums0[pixel] = uintBitsToFloat(nearest_splats[r]);
+        if (COVERAGE) coverage[pixel] = coverage_masks[r];
     }
-    if (!is_last()) return;
+    if (!is_last_slice()) return;
     for (uint r = 0; r < ROWS; r++) {
-        uvec2 at = low + lane_pixel(r);
-        float alpha = COVERAGE ? bitCount(covered[r]) / 16.0 : 1.0;
-        Pixel pixel = pixel_of(at, depths[r] > 0.0, winners[r], alpha);
-        if (is_on_picture(at)) store_pixel(at.y * uint(frame.viewport.x) + at.x, pixel);
+        uvec2 coordinates = origin + lane_pixel(r);
+        float alpha = COVERAGE ? bitCount(coverage_masks[r]) / 16.0 : 1.0;
+        Pixel pixel = pixel_of(coordinates, depths[r] > 0.0, nearest_splats[r], alpha);
+        if (is_in_viewport(coordinates)) store_pixel(coordinates.y * uint(frame.viewport.x) + coordinates.x, pixel);
     }
 }
 
@@ -78,23 +78,23 @@ void main() {
 #endif
 #ifdef VERTEX
 
-#include "lib/surface.glsl"
+#include "lib/surfel_attributes.glsl"
 
-layout(location = 4) flat out vec3 first;
-layout(location = 5) flat out vec3 second;
+layout(location = 4) flat out vec3 attribute0;
+layout(location = 5) flat out vec3 attribute1;
 
 void main() {
-    uint i = surfel_number();
+    uint i = surfel_index();
     Splat splat = splat_of(i);
-    place_splat(i, splat, visibility_variance(variance_of(splat)), gl_VertexIndex % 3);
-    surface_of(i, splat.epsilon, first, second);
+    write_splat_vertex(i, splat, visibility_variance(variance_of(splat)), gl_VertexIndex % 3);
+    surfel_attributes(i, splat.epsilon, attribute0, attribute1);
 }
 
 #endif
 #ifdef FRAGMENT
 
-layout(location = 4) flat in vec3 first;
-layout(location = 5) flat in vec3 second;
+layout(location = 4) flat in vec3 attribute0;
+layout(location = 5) flat in vec3 attribute1;
 
 layout(location = 0) out vec4 sum0;
 layout(location = 1) out vec4 sum1;
@@ -102,10 +102,10 @@ layout(location = 1) out vec4 sum1;
 void main() {
     vec2 m;
     float key, rank;
-    drawn_fragment(m, key, rank);
+    evaluate_fragment(m, key, rank);
     gl_FragDepth = ranked(min(key, plane_lo_disc.w), rank);
-    sum0 = vec4(1.0, first);
-    sum1 = vec4(SUM_DEPTH ? frame.key_gain * key : 0.0, second);
+    sum0 = vec4(1.0, attribute0);
+    sum1 = vec4(SUM_DEPTH ? frame.key_gain * key : 0.0, attribute1);
 }
 
 #endif

@@ -9,7 +9,7 @@
 #include "lib/frame.glsl"
 #include "lib/picture_pixel.glsl"
 
-// Within a pass of a host: the picture goes to the host's colours and depth.
+// In a subpass of a host: outputs go to the host's colour and depth attachments.
 #if defined(SUBPASS) || defined(SUBPASS_COVERAGE)
 #define IN_SUBPASS
 #endif
@@ -18,10 +18,10 @@
 #endif
 
 #ifdef COVERAGE
-layout(set = 1, binding = 5, std430) readonly buffer Coverage { uint coverage[]; }; // a bit a sample
+layout(set = 1, binding = 5, std430) readonly buffer Coverage { uint coverage[]; }; // one bit per sample
 #endif
 
-// The part of pixel i that is covered, where there is something.
+// Covered part of pixel i.
 float alpha_of(uint i) {
 #ifdef COVERAGE
     return bitCount(coverage[i]) / 16.0;
@@ -63,7 +63,7 @@ void main() {
 
 #include "lib/host.glsl"
 
-layout(constant_id = 42) const bool SUMS_TELL = false; // what visibility has not written has no sums
+layout(constant_id = 42) const bool VISIBLE_BY_SUMS = false; // pixels outside visibility have no sums
 
 layout(set = 1, binding = 12, input_attachment_index = 0) uniform subpassInput visibility_input;
 layout(set = 1, binding = 13, input_attachment_index = 1) uniform subpassInput sums0_input;
@@ -77,13 +77,13 @@ layout(location = 0) out vec4 out_image;
 layout(location = 1) out vec4 out_normal;
 
 void main() {
-    // The middle of the pixel, whichever of its samples the host draws at.
+    // Pixel centre, also with per-sample shading.
     vec2 centre = floor(gl_FragCoord.xy) + 0.5 - frame.origin;
-    uvec2 at = uvec2(centre);
+    uvec2 texel = uvec2(centre);
     vec4 s0 = subpassLoad(sums0_input);
     vec4 s1 = SUM_DEPTH || WIDE_SUMS1 ? subpassLoad(sums1_input) : vec4(0.0);
-    bool visible = SUMS_TELL ? s0.x > 0.0 : subpassLoad(visibility_input).r > 0.0;
-    float alpha = alpha_of(at.y * uint(frame.viewport.x) + at.x);
+    bool visible = VISIBLE_BY_SUMS ? s0.x > 0.0 : subpassLoad(visibility_input).r > 0.0;
+    float alpha = alpha_of(texel.y * uint(frame.viewport.x) + texel.x);
     Pixel pixel = normalize_pixel(centre, visible, alpha, s0, s1);
     if (pixel.image.a == 0.0) discard;
     out_image = over_host(pixel.image);
@@ -102,11 +102,11 @@ layout(location = 1) out vec4 out_normal;
 layout(location = 2) out float out_depth;
 
 void main() {
-    ivec2 at = ivec2(gl_FragCoord.xy);
-    bool visible = texelFetch(visibility_image, at, 0).r > 0.0;
-    vec4 s1 = SUM_DEPTH || WIDE_SUMS1 ? texelFetch(sums1_image, at, 0) : vec4(0.0);
-    float alpha = alpha_of(at.y * uint(frame.viewport.x) + at.x);
-    Pixel pixel = normalize_pixel(gl_FragCoord.xy, visible, alpha, texelFetch(sums0_image, at, 0), s1);
+    ivec2 texel = ivec2(gl_FragCoord.xy);
+    bool visible = texelFetch(visibility_image, texel, 0).r > 0.0;
+    vec4 s1 = SUM_DEPTH || WIDE_SUMS1 ? texelFetch(sums1_image, texel, 0) : vec4(0.0);
+    float alpha = alpha_of(texel.y * uint(frame.viewport.x) + texel.x);
+    Pixel pixel = normalize_pixel(gl_FragCoord.xy, visible, alpha, texelFetch(sums0_image, texel, 0), s1);
     image = pixel.image;
     out_normal = vec4(pixel.normal, 0.0);
     out_depth = pixel.depth;

@@ -1,43 +1,44 @@
-// Project: the nearest point of each pixel (marroquim2008 §3.1). A surfel is one point; segments (LINES) and TRIANGLES are several, and meet
-// the surfels that were drawn where those are (DRAWN_POINTS). Surfels that are drawn are only counted (COUNTED).
+// Project: finds the nearest point of each pixel (marroquim2008 §3.1). A surfel is one point; segments (LINES) and TRIANGLES are several.
+// RASTER_POINTS copies the points of the raster path to the buffer of nearest points. COUNT_ONLY counts the surfels that the raster path
+// draws.
 #version 450
 #pragma variant LINES
 #pragma variant TRIANGLES
-#pragma variant DRAWN_POINTS
-#pragma variant COUNTED
+#pragma variant RASTER_POINTS
+#pragma variant COUNT_ONLY
 #extension GL_GOOGLE_include_directive : require
 #ifdef COMPUTE
-#ifndef COUNTED
+#ifndef COUNT_ONLY
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_EXT_shader_atomic_int64 : require
 #endif
-#ifdef DRAWN_POINTS
+#ifdef RASTER_POINTS
 #extension GL_EXT_samplerless_texture_functions : require
 #endif
 
-#ifdef DRAWN_POINTS
+#ifdef RASTER_POINTS
 #include "lib/frame.glsl"
 #else
 #include "lib/instance.glsl"
 #endif
-#ifndef COUNTED
+#ifndef COUNT_ONLY
 #define NEAREST_ACCESS
 #include "lib/nearest_points.glsl"
 #endif
 #if defined(LINES) || defined(TRIANGLES)
 #include "lib/sums.glsl"
-#define SAMPLES_ONLY
+#define LEVEL_0_ONLY
 #include "lib/pyramid.glsl"
 #include "lib/lens.glsl"
 #endif
 
 layout(local_size_x = 64) in;
 
-#if !defined(COUNTED) && !defined(DRAWN_POINTS)
-// Number i of the window has a point in a pixel.
+#if !defined(COUNT_ONLY) && !defined(RASTER_POINTS)
+// Projects a point of element i of the chunk to a pixel.
 void project(uint i, ivec2 at, float distance) {
     uint pixel = uint(at.y) * uint(frame.viewport.x) + uint(at.x);
-    atomicMin(nearest_points[pixel], nearest_point(first_number() + i, world_distance(distance)));
+    atomicMin(nearest_points[pixel], nearest_point(first_id() + i, world_distance(distance)));
 }
 #endif
 
@@ -49,14 +50,14 @@ void project(uint i, ivec2 at, float distance) {
 void main() {
     uint i = gl_GlobalInvocationID.x;
     Segment segment;
-    if (i >= window.count || !segment_of(i, segment)) return;
+    if (i >= chunk.count || !segment_of(i, segment)) return;
     for (int k = 0; k < segment.strands; k++) {
         Strand strand;
         if (!strand_of(segment, k, strand)) continue;
         ivec2 columns = columns_of(strand);
         for (int column = columns.x; column <= columns.y; column++) {
-            Place place;
-            if (place_of(segment, strand, column, place)) project(i, place.at, place.nearest);
+            StrandPoint point;
+            if (strand_point(segment, strand, column, point)) project(i, point.pixel, point.nearest);
         }
     }
 }
@@ -66,10 +67,10 @@ void main() {
 #include "lib/primitives.glsl"
 #include "lib/triangle.glsl"
 
-// Triangles of more pixels than an invocation should visit, which are left to a second dispatch with a workgroup a triangle.
+// Triangles of more pixels than an invocation should visit are listed, and rasterized by a second dispatch with a workgroup per triangle.
 layout(constant_id = 30) const bool LARGE_TRIANGLES = false;
-const uint MOST = 64; // pixels of the box about one that is not large
-layout(set = 0, binding = 16, std430) buffer LargeTriangles { uint large_triangles[]; }; // as LargeSplats
+const uint MOST_PIXELS = 64; // largest box of a triangle that is not listed, pixels
+layout(set = 0, binding = 16, std430) buffer LargeTriangles { uint large_triangles[]; }; // list lengths (LIST_HEADER), then lists of element indices
 
 void project_box(uint i, Triangle triangle, ivec4 box, uint first, uint step) {
     uint width = uint(box.z - box.x + 1), area = width * uint(box.w - box.y + 1);
@@ -82,7 +83,7 @@ void project_box(uint i, Triangle triangle, ivec4 box, uint first, uint step) {
 }
 
 void main() {
-    uint instance = instance_number();
+    uint instance = instance_index();
     Triangle triangle;
     if (LARGE_TRIANGLES) {
         for (uint k = gl_WorkGroupID.x; k < large_triangles[instance]; k += gl_NumWorkGroups.x) {
@@ -93,26 +94,26 @@ void main() {
         return;
     }
     uint i = gl_GlobalInvocationID.x;
-    if (i >= window.count || !triangle_of(i, triangle)) return;
+    if (i >= chunk.count || !triangle_of(i, triangle)) return;
     ivec4 box = box_of(triangle);
     if (any(greaterThan(box.xy, box.zw))) return;
     ivec2 size = box.zw - box.xy + 1;
-    if (uint(size.x) * uint(size.y) > MOST) large_triangles[list_start() + atomicAdd(large_triangles[instance], 1)] = i;
+    if (uint(size.x) * uint(size.y) > MOST_PIXELS) large_triangles[list_start() + atomicAdd(large_triangles[instance], 1)] = i;
     else project_box(i, triangle, box, 0, 1);
 }
 
-#elif defined(DRAWN_POINTS)
+#elif defined(RASTER_POINTS)
 
-#include "lib/drawn_points.glsl"
+#include "lib/raster_points.glsl"
 
 void main() {
     uvec2 size = uvec2(frame.viewport);
     uint pixel = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     if (pixel >= size.x * size.y) return;
-    uint number;
+    uint id;
     float distance;
-    bool there = drawn_point(ivec2(pixel % size.x, pixel / size.x), number, distance);
-    nearest_points[pixel] = there ? nearest_point(number, distance) : NO_POINT;
+    bool found = raster_point(ivec2(pixel % size.x, pixel / size.x), id, distance);
+    nearest_points[pixel] = found ? nearest_point(id, distance) : NO_POINT;
 }
 
 #else
@@ -122,12 +123,12 @@ void main() {
 
 void main() {
     uint i = gl_GlobalInvocationID.x;
-    if (i >= window.count) return;
+    if (i >= chunk.count) return;
     Point point;
     uint reason = point_of(i, point);
     count(reason);
-#ifndef COUNTED
-    if (reason == DRAWN) project(i, point.at, point.distance);
+#ifndef COUNT_ONLY
+    if (reason == DRAWN) project(i, point.pixel, point.distance);
 #endif
 }
 

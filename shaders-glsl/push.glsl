@@ -1,4 +1,4 @@
-// Push: a finer pixel from the coarser ones about it and from its neighbours (marroquim2008 §3.3).
+// Push: a pixel of the finer level from the coarser pixels around it and from its neighbours (marroquim2008 §3.3).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 
@@ -9,97 +9,97 @@
 #include "lib/lens.glsl"
 
 PYRAMID(3, from, readonly)
-LOADED(from)
+DEFINE_LOAD(from)
 PYRAMID(2, to, )
-LOADED(to)
-STORED(to)
+DEFINE_LOAD(to)
+DEFINE_STORE(to)
 
-layout(constant_id = 32) const bool PING_PONG = false; // levels are kept in turns
+layout(constant_id = 32) const bool PING_PONG = false; // both pyramids alternate by level
 
-// What a disc's variance is widened by on level 0, px²; four times as much a level. Narrower ones leave holes between themselves.
+// Widening of a disc's variance on level 0, px²; four times as much per level. Narrower discs leave holes.
 const float WIDENING = 0.25;
-// ln of the weight at a disc's rim, negated: σ is a third of the radius; half of it as published.
+// Negated ln of the weight at a disc's rim: σ is a third of the radius; half of it as published.
 const float RIM = 4.5, PAPER_RIM = 2.0;
 
-// What the spread of the discs about a pixel is widened by, px²: a texture's gradient is not told from what is nearer than an eighth of a
-// pixel.
+// Widening of the covariance of the discs around a pixel, px²: discs within an eighth of a pixel do not define a texture's gradient.
 const float SPREAD = 1.0 / 64.0;
-// And by this part of itself, so that what lies along a line has a gradient along it alone.
+// Relative widening, so that discs along a line define a gradient along it only.
 const float ALONG = 1.0 / 4096.0;
 
-// Candidate k for pixel `at`: the four nearest coarser pixels, then the pixel and its neighbours, row by row. Its displacement is from `own`.
-Sample candidate(int k, uint level, uint start, uint above, ivec2 at) {
+// Candidate k for a pixel: the four nearest coarser pixels, then the pixel and its neighbours, row by row. Its displacement is relative to
+// the pixel's centre.
+Sample candidate(int k, uint level, uint start, uint coarser_start, ivec2 pixel) {
     bool coarse = k < 4;
-    uint of = coarse ? level + 1 : level;
-    ivec2 side = 2 * (at & 1) - 1;
-    ivec2 place = coarse ? at / 2 + side * ivec2(k & 1, k >> 1) : at + ivec2((k - 4) % 3, (k - 4) / 3) - 1;
-    if (of >= pass.levels) return NOTHING;
-    // Beyond the border the pixel's own place is read, and forgotten: all lanes read.
-    bool there = is_within(of, place);
-    ivec2 known = there ? place : coarse ? at / 2 : at;
-    Sample s = NOTHING;
-    // In turns, what is final on the coarser level lies beside what was copied of this one.
-    if (coarse && !PING_PONG) s = load_to(place_in(of, above, known));
-    else s = load_from(place_in(of, coarse ? above : start, known));
-    if (!there) s = NOTHING;
-    // From whole numbers: a difference of positions on the picture would lose digits.
-    s.displacement += (coarse ? vec2(2 * place - at) + 0.5 : vec2(place - at)) * float(1u << level);
+    uint from_level = coarse ? level + 1 : level;
+    ivec2 step = 2 * (pixel & 1) - 1;
+    ivec2 neighbour = coarse ? pixel / 2 + step * ivec2(k & 1, k >> 1) : pixel + ivec2((k - 4) % 3, (k - 4) / 3) - 1;
+    if (from_level >= pass.levels) return NO_SAMPLE;
+    // Outside the level, a valid pixel is loaded and ignored: all lanes load.
+    bool inside = is_within(from_level, neighbour);
+    ivec2 valid = inside ? neighbour : coarse ? pixel / 2 : pixel;
+    Sample s = NO_SAMPLE;
+    // With ping-pong, the pyramid that is read holds the final coarser level and a copy of this one.
+    if (coarse && !PING_PONG) s = load_to(sample_index(from_level, coarser_start, valid));
+    else s = load_from(sample_index(from_level, coarse ? coarser_start : start, valid));
+    if (!inside) s = NO_SAMPLE;
+    // Integer offsets keep the digits that differences of screen positions lose.
+    s.displacement += (coarse ? vec2(2 * neighbour - pixel) + 0.5 : vec2(neighbour - pixel)) * float(1u << level);
     return s;
 }
 
 void main() {
     uint level = pass.level;
-    ivec2 at = own_pixel(level);
-    if (at.x < 0) return;
-    vec2 own = level_centre(level, at);
-    uint start = level_start(level), above = level_start(level + 1);
+    ivec2 pixel = invocation_pixel(level);
+    if (pixel.x < 0) return;
+    vec2 centre = level_centre(level, pixel);
+    uint start = level_start(level), coarser_start = level_start(level + 1);
     float widening = PAPER ? 0.0 : WIDENING * float(1u << (2 * level));
     int count = PAPER ? 4 : 13;
 
-    Sample point = load_from(place_in(level, start, at));
-    // The one that decides which others are its surface: the nearest; as published, of which kind, by the greatest weight.
-    Sample front = NOTHING;
-    float weights[13], first = PAPER ? 0.0 : -1e38;
+    Sample point = load_from(sample_index(level, start, pixel));
+    // The front disc decides which others are of its surface: the nearest; as published, the one of greatest weight.
+    Sample front = NO_SAMPLE;
+    float weights[13], best = PAPER ? 0.0 : -1e38;
     for (int k = 0; k < count; k++) {
-        Sample s = candidate(k, level, start, above, at);
-        float m2 = radii2(s, own + s.displacement, -s.displacement, widening);
-        bool counts = s.near > 0.0 && m2 <= 1.0;
-        weights[k] = counts ? exp(-(PAPER ? PAPER_RIM : RIM) * m2) : 0.0;
-        float rank = PAPER ? weights[k] : -s.near;
-        if (counts && rank > first) {
-            first = rank;
+        Sample s = candidate(k, level, start, coarser_start, pixel);
+        float m2 = radii2(s, centre + s.displacement, -s.displacement, widening);
+        bool covers = s.near > 0.0 && m2 <= 1.0;
+        weights[k] = covers ? exp(-(PAPER ? PAPER_RIM : RIM) * m2) : 0.0;
+        float priority = PAPER ? weights[k] : -s.near;
+        if (covers && priority > best) {
+            best = priority;
             front = s;
         }
     }
-    // On the finest level a point is seen where its disc covers the pixel's centre; elsewhere it is a source alone.
+    // On the finest level a point is visible if its disc covers the pixel's centre; otherwise it only contributes to others.
     if (!PAPER && level == 0 && weights[8] == 0.0) point.near = 0.0;
 
-    Sample mean = NOTHING;
-    float total = 0.0, most = 0.0;
-    // Displacements from the front's, and products of these, and of these and coordinates.
-    vec2 apart = vec2(0.0);
-    vec3 spread = vec3(0.0);
-    vec2 by_x = vec2(0.0), by_y = vec2(0.0);
+    Sample mean = NO_SAMPLE;
+    float total = 0.0, greatest = 0.0;
+    // Mean displacement from the front's, and second moments of displacements and coordinates.
+    vec2 sum = vec2(0.0);
+    vec3 squares = vec3(0.0);
+    vec2 x_products = vec2(0.0), y_products = vec2(0.0);
     for (int k = 0; k < (front.near > 0.0 ? count : 0); k++) {
-        Sample s = candidate(k, level, start, above, at);
+        Sample s = candidate(k, level, start, coarser_start, pixel);
         float w = (PAPER || s.near <= front.far) && s.tube == front.tube ? weights[k] : 0.0;
         total += w;
         mean.near += w * s.near;
         mean.far += w * s.far;
-        // Discs carry the depths of their centres; a pixel of the picture shows that of its own. Tubes carry those of their axes.
-        mean.depth += w * (!PAPER && level == 0 && !s.tube ? depth_at(s, own + s.displacement, -s.displacement) : s.depth);
+        // Discs store the depth of their centres; the picture shows the depth at the pixel's centre. Tubes store the depth of their axes.
+        mean.depth += w * (!PAPER && level == 0 && !s.tube ? depth_at(s, centre + s.displacement, -s.displacement) : s.depth);
         mean.radius += w * s.radius;
         mean.displacement += w * s.displacement;
-        mean.normal += w * direction_as(s, front);
+        mean.normal += w * aligned_direction(s, front);
         mean.colour += w * s.colour;
-        vec2 e = s.displacement - front.displacement, turn = turn_from(s, front);
-        mean.coordinates += w * turn;
-        apart += w * e;
-        spread += w * vec3(e.x * e.x, e.x * e.y, e.y * e.y);
-        by_x += w * e.x * turn;
-        by_y += w * e.y * turn;
-        if (w > most) {
-            most = w;
+        vec2 displacement = s.displacement - front.displacement, offset = coordinate_offset(s, front);
+        mean.coordinates += w * offset;
+        sum += w * displacement;
+        squares += w * vec3(displacement.x * displacement.x, displacement.x * displacement.y, displacement.y * displacement.y);
+        x_products += w * displacement.x * offset;
+        y_products += w * displacement.y * offset;
+        if (w > greatest) {
+            greatest = w;
             mean.id = s.id;
         }
     }
@@ -114,25 +114,25 @@ void main() {
         mean.colour /= total;
         mean.coordinates /= total;
         if (TEXTURE && !PAPER && level == 0) {
-            // To first order, by least squares: a mean would be that at the mean of the discs' centres.
-            vec2 m = mean.displacement, d = apart / total;
-            vec3 c = spread / total - vec3(d.x * d.x, d.x * d.y, d.y * d.y);
+            // To first order, by least squares: a mean would give the coordinates at the mean of the discs' centres.
+            vec2 m = mean.displacement, d = sum / total;
+            vec3 c = squares / total - vec3(d.x * d.x, d.x * d.y, d.y * d.y);
             c.xz += SPREAD + ALONG * (c.x + c.z);
-            vec2 x = by_x / total - d.x * mean.coordinates, y = by_y / total - d.y * mean.coordinates;
+            vec2 x = x_products / total - d.x * mean.coordinates, y = y_products / total - d.y * mean.coordinates;
             mean.coordinates -= ((x * c.z - y * c.y) * m.x + (y * c.x - x * c.y) * m.y) / (c.x * c.z - c.y * c.y);
         }
         mean.coordinates += front.coordinates;
     }
-    bool known = point.near > 0.0, made = total > 0.0;
+    bool has_point = point.near > 0.0, has_mean = total > 0.0;
     if (PAPER) {
-        // Behind is what is behind the coarser pixel that holds it.
-        Sample holder = candidate(0, level, start, above, at);
-        bool behind = holder.near > 0.0 && point.near > holder.far;
-        if (!known || behind) point = mean;
-    } else if (!known || made && point.near > mean.far) {
+        // Hidden if behind the coarser pixel that contains it.
+        Sample parent = candidate(0, level, start, coarser_start, pixel);
+        bool hidden = parent.near > 0.0 && point.near > parent.far;
+        if (!has_point || hidden) point = mean;
+    } else if (!has_point || has_mean && point.near > mean.far) {
         point = mean;
-    } else if (level == 0 && made && mean.near <= point.far && mean.tube == point.tube) {
-        // What is seen of a tube is told from its axis, whose depth is that of the disc's centre.
+    } else if (level == 0 && has_mean && mean.near <= point.far && mean.tube == point.tube) {
+        // The surface of a tube is computed from its axis, whose depth is that of the disc's centre.
         if (point.tube) {
             point.displacement = mean.displacement;
             point.radius = mean.radius;
@@ -142,7 +142,7 @@ void main() {
         point.normal = mean.normal;
         point.depth = mean.depth;
     }
-    store_to(place_in(level, start, at), point);
+    store_to(sample_index(level, start, pixel), point);
 }
 
 #endif

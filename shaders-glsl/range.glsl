@@ -1,4 +1,4 @@
-// Range: the least and the greatest of a picture's numbers, of the pixels that show a surface.
+// Range: least and greatest value of a scalar image, over the pixels that show a surface.
 #version 450
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -6,23 +6,23 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(push_constant) uniform Numbers {
-    float least_alpha; // a pixel that is less covered shows no surface
-    uint opaque;       // whether one that is covered shows nothing else
-} numbers;
+layout(push_constant) uniform ScalarOptions {
+    float least_alpha; // pixels with less α show no surface
+    uint opaque;       // whether covered pixels become opaque
+} options;
 
-layout(set = 0, binding = 0) uniform texture2D screen; // red times α, α
-layout(set = 0, binding = 1, std430) buffer NumberRange {
-    uint least;    // bits_of the least number
-    uint greatest; // the complement of those of the greatest: both fall from all ones
+layout(set = 0, binding = 0) uniform texture2D screen; // value times α, α
+layout(set = 0, binding = 1, std430) buffer ValueRange {
+    uint least;    // ordered_bits of the least value
+    uint greatest; // complement of the ordered_bits of the greatest value: both start as all ones and fall
 } range;
 
-// Side of the block of pixels that an invocation visits.
+// Side of the block of pixels that an invocation reads.
 const int SIDE = 8;
 
-// Bits that are in the order of the numbers.
-uint bits_of(float number) {
-    uint bits = floatBitsToUint(number);
+// Bits in the order of the floats.
+uint ordered_bits(float value) {
+    uint bits = floatBitsToUint(value);
     return (bits & 0x80000000u) != 0u ? ~bits : bits | 0x80000000u;
 }
 
@@ -33,9 +33,9 @@ void main() {
     uint least = 0xffffffffu, greatest = 0xffffffffu;
     for (int y = low.y; y < high.y; y++) {
         for (int x = low.x; x < high.x; x++) {
-            vec4 seen = texelFetch(screen, ivec2(x, y), 0);
-            if (seen.a < numbers.least_alpha) continue;
-            uint bits = bits_of(seen.r / seen.a);
+            vec4 texel = texelFetch(screen, ivec2(x, y), 0);
+            if (texel.a < options.least_alpha) continue;
+            uint bits = ordered_bits(texel.r / texel.a);
             least = min(least, bits);
             greatest = min(greatest, ~bits);
         }

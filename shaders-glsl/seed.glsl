@@ -1,5 +1,5 @@
-// Seed: the depth of a host's surfaces, moved back so far that no splat behind it can be seen, as what visibility starts from
-// (src/embed/native.rs).
+// Seed: initializes visibility with the depth of the host's surfaces, moved back by the largest ε, so that it occludes only hidden splats
+// (src/embed/native/seeding.rs).
 #version 450
 #pragma variant MULTISAMPLED FRAGMENT
 #extension GL_GOOGLE_include_directive : require
@@ -13,10 +13,10 @@ layout(constant_id = 0) const bool PERSPECTIVE = true;
 layout(constant_id = 43) const uint HOST_SAMPLES = 1;
 
 layout(push_constant) uniform Seed {
-    vec2 key;         // κ of the host's depth d is key.x d + key.y
-    float resolution; // what two depths of the host's may differ by and be the same, and what rounding does to them, as κ
-    float rounding;   // what sums of κ may be off, relative
-    float behind;     // how far ε reaches at most: perspective: over the distance of the near plane; orthographic: as a difference of κ
+    vec2 key;         // maps the host's depth d to κ = key.x d + key.y
+    float resolution; // resolution of the host's depth and its rounding error, as κ
+    float rounding;   // relative rounding error of sums of κ
+    float behind;     // largest ε: perspective: over the distance of the near plane; orthographic: as a difference of κ
 } seed;
 
 #ifdef MULTISAMPLED
@@ -25,12 +25,12 @@ layout(set = 1, binding = 15, input_attachment_index = 0) uniform subpassInputMS
 layout(set = 1, binding = 15, input_attachment_index = 0) uniform subpassInput host_depth;
 #endif
 
-// κ of the host's surface, at most.
+// Lower bound of the κ of the host's surface.
 float key_at(float depth) {
     return (seed.key.x * depth + seed.key.y - seed.resolution) * (1.0 - seed.rounding);
 }
 
-// What is visible at any sample is visible.
+// A splat is visible if any sample shows it.
 float farthest() {
 #ifdef MULTISAMPLED
     float key = key_at(subpassLoad(host_depth, 0).r);

@@ -1,4 +1,4 @@
-// Shade: the final level 0 → picture, normal, depth, number of the point, lit pixel by pixel (marroquim2008 §3.4).
+// Shade: lights the final level 0 pixel by pixel and writes picture, normal, depth and id (marroquim2008 §3.4).
 #version 450
 #pragma variant LOOKUPS
 #extension GL_GOOGLE_include_directive : require
@@ -13,9 +13,9 @@
 #include "lib/lattice.glsl"
 
 PYRAMID(2, final, readonly)
-LOADED(final)
+DEFINE_LOAD(final)
 
-layout(constant_id = 25) const bool MATERIALS = false; // points shine in their own way
+layout(constant_id = 25) const bool MATERIALS = false; // points have materials
 
 #ifdef LOOKUPS
 #include "lib/texture.glsl"
@@ -26,70 +26,69 @@ layout(constant_id = 9) const bool OUT_NORMAL = false;
 layout(constant_id = 10) const bool OUT_DEPTH = false;
 layout(constant_id = 35) const bool OUT_ID = false;
 
-layout(set = 1, binding = 3, std430) writeonly buffer Picture { uint picture[]; }; // bits: colour, then normals, then depths, then numbers
+layout(set = 1, binding = 3, std430) writeonly buffer Picture { uint picture[]; }; // bits: colours, then normals, then depths, then ids
 
-layout(constant_id = 31) const bool COVERAGE = false; // α is the part of a pixel that is covered, not whether its centre is
+layout(constant_id = 31) const bool COVERAGE = false; // α is the covered part of a pixel, not whether its centre is covered
 
-// What a disc's variance is widened by, px²: what push widens it by for pixels, at half their side. Narrower discs leave holes between
-// themselves; wider ones reach beyond the outline.
-const float SOLID = 0.0625;
+// Widening of a disc's variance for coverage, px²: push's widening at half the side of a pixel. Narrower discs leave holes; wider ones
+// reach beyond the outline.
+const float WIDENING = 0.0625;
 
-// The samples of a pixel that are within the disc with this centre, px, and e px from the pixel's.
+// Mask of the pixel's samples inside the disc with this centre, px, which lies e px from the pixel's.
 uint covered_by(Sample s, vec2 centre, vec2 e) {
     uint mask = 0;
-    for (uint k = 0; k < SAMPLES; k++) mask |= uint(radii2(s, centre, sample_at(k) - e, SOLID) <= 1.0) << k;
+    for (uint k = 0; k < SAMPLES; k++) mask |= uint(radii2(s, centre, sample_position(k) - e, WIDENING) <= 1.0) << k;
     return mask;
 }
 
-// The part of a pixel that is covered, where it has a disc: the samples within any disc of the pixels next to it, hidden ones too, and at
-// least one. All of it, unless a neighbour is empty.
-float coverage_of(ivec2 at) {
+// Covered part of a pixel that has a disc: samples inside any disc of the pixel and its neighbours, hidden ones too, and at least one. 1 if
+// all neighbours have discs.
+float coverage_of(ivec2 pixel) {
     uint mask = 0;
     bool inner = true;
     for (int k = 0; k < 9; k++) {
-        ivec2 place = at + ivec2(k % 3, k / 3) - 1;
-        if (is_within(0, place)) inner = inner && load_final(place_in(0, 0, place)).near > 0.0;
+        ivec2 neighbour = pixel + ivec2(k % 3, k / 3) - 1;
+        if (is_within(0, neighbour)) inner = inner && load_final(sample_index(0, 0, neighbour)).near > 0.0;
     }
     if (inner) return 1.0;
     for (int k = 0; k < 9; k++) {
-        ivec2 place = at + ivec2(k % 3, k / 3) - 1;
-        if (!is_within(0, place)) continue;
-        Sample s = load_final(place_in(0, 0, place));
-        vec2 e = vec2(place - at) + s.displacement;
-        if (s.near > 0.0) mask |= covered_by(s, level_centre(0, at) + e, e);
+        ivec2 neighbour = pixel + ivec2(k % 3, k / 3) - 1;
+        if (!is_within(0, neighbour)) continue;
+        Sample s = load_final(sample_index(0, 0, neighbour));
+        vec2 e = vec2(neighbour - pixel) + s.displacement;
+        if (s.near > 0.0) mask |= covered_by(s, level_centre(0, pixel) + e, e);
     }
     return max(bitCount(mask), 1) / float(SAMPLES);
 }
 
 void main() {
-    ivec2 at = own_pixel(0);
-    if (at.x < 0) return;
+    ivec2 pixel = invocation_pixel(0);
+    if (pixel.x < 0) return;
     uvec2 size = uvec2(frame.viewport);
-    uint pixels = size.x * size.y, i = uint(at.y) * size.x + uint(at.x);
+    uint pixels = size.x * size.y, i = uint(pixel.y) * size.x + uint(pixel.x);
     Sample s = load_final(i);
     vec4 image = frame.background;
     if (s.near > 0.0) {
-        vec2 centre = vec2(at) + 0.5;
+        vec2 centre = vec2(pixel) + 0.5;
         vec3 ray = centre.x * view.ray_hi[0].xyz + centre.y * view.ray_hi[1].xyz + view.ray_hi[2].xyz;
         vec3 to_eye = PERSPECTIVE ? -normalize(ray) : -view.forward_hi.xyz;
         vec3 colour = SUM_COLOURS ? s.colour : frame.albedo.rgb;
         Shine shine = FRAME_SHINE;
 #ifdef LOOKUPS
-        if (TEXTURE) colour = texture_at(at, s);
+        if (TEXTURE) colour = texture_colour(pixel, s);
         if (MATERIALS) shine = shine_of(s.id);
 #endif
         vec3 tangent = s.normal;
         if (s.tube && PAPER) s.normal = line_normal(tangent, to_eye);
         else if (s.tube) s.depth = on_tube(s, centre, -s.displacement, s.normal);
-        // A pixel shows one point, or what is made of those about it.
-        vec3 shown = vec3(1.0);
+        vec3 shaded = vec3(1.0);
         if (SHADING == LIT) {
-            shown = s.tube && PAPER ? lit_line(shine, colour, tangent, to_eye) : lit(shine, colour, s.normal, to_eye);
+            shaded = s.tube && PAPER ? lit_line(shine, colour, tangent, to_eye) : lit(shine, colour, s.normal, to_eye);
         }
-        if (SHADING == COLOUR) shown = colour;
-        if (SHADING == NORMAL) shown = s.normal;
-        if (SHADING == DEPTH) shown = vec3(s.depth);
-        image = over_background(shown, COVERAGE ? coverage_of(at) : 1.0);
+        if (SHADING == COLOUR) shaded = colour;
+        if (SHADING == NORMAL) shaded = s.normal;
+        if (SHADING == DEPTH) shaded = vec3(s.depth);
+        image = over_background(shaded, COVERAGE ? coverage_of(pixel) : 1.0);
     }
     for (uint k = 0; k < 4; k++) picture[4 * i + k] = floatBitsToUint(image[k]);
     if (OUT_NORMAL) for (uint k = 0; k < 3; k++) picture[4 * pixels + 3 * i + k] = floatBitsToUint(s.normal[k]);

@@ -1,4 +1,4 @@
-// Surface: visibility, attribute and normalize tile by tile, in one dispatch and without targets in between (zwicker2004 §6).
+// Surface: runs visibility, attribute and normalize per tile in one dispatch, without intermediate targets (zwicker2004 §6).
 #version 450
 #pragma variant SUBGROUPS COMPUTE
 #extension GL_GOOGLE_include_directive : require
@@ -16,15 +16,15 @@
 
 void main() {
     load_frame();
-    uvec2 low = tile_low();
-    find_visible(low);
-    if (COVERAGE) find_covered(low);
-    sum_attributes(low);
+    uvec2 origin = tile_origin();
+    compute_visibility(origin);
+    if (COVERAGE) compute_coverage(origin);
+    sum_attributes(origin);
     for (uint r = 0; r < ROWS; r++) {
-        uvec2 at = low + lane_pixel(r);
-        float alpha = COVERAGE ? bitCount(covered[r]) / 16.0 : 1.0;
-        Pixel pixel = normalize_pixel(vec2(at) + 0.5, depths[r] > 0.0, alpha, tile_sums0[r], tile_sums1[r]);
-        if (is_on_picture(at)) store_pixel(at.y * uint(frame.viewport.x) + at.x, pixel);
+        uvec2 pixel = origin + lane_pixel(r);
+        float alpha = COVERAGE ? bitCount(coverage_masks[r]) / 16.0 : 1.0;
+        Pixel result = normalize_pixel(vec2(pixel) + 0.5, depths[r] > 0.0, alpha, tile_sums0[r], tile_sums1[r]);
+        if (is_in_viewport(pixel)) store_pixel(pixel.y * uint(frame.viewport.x) + pixel.x, result);
     }
 }
 

@@ -29,21 +29,21 @@ layout(set = 1, binding = 5, std430) buffer Coverage { uint coverage[]; };
 
 void main() {
     load_frame();
-    uvec2 low = tile_low();
+    uvec2 origin = tile_origin();
     for (uint r = 0; r < ROWS; r++) {
-        uvec2 at = low + lane_pixel(r);
-        uint pixel = is_on_picture(at) ? pixel_index(ivec2(at)) : 0;
-        if (goes_on()) depths[r] = uintBitsToFloat(visibility[pixel]);
-        if (goes_on() && COVERAGE) covered[r] = coverage[pixel];
+        uvec2 pixel = origin + lane_pixel(r);
+        uint index = is_in_viewport(pixel) ? pixel_index(ivec2(pixel)) : 0;
+        if (is_resumed()) depths[r] = uintBitsToFloat(visibility[index]);
+        if (is_resumed() && COVERAGE) coverage_masks[r] = coverage[index];
     }
-    find_visible(low);
-    if (COVERAGE) find_covered(low);
+    compute_visibility(origin);
+    if (COVERAGE) compute_coverage(origin);
     for (uint r = 0; r < ROWS; r++) {
-        uvec2 at = low + lane_pixel(r);
-        if (!is_on_picture(at)) continue;
-        uint pixel = pixel_index(ivec2(at));
-        visibility[pixel] = floatBitsToUint(depths[r]);
-        if (COVERAGE) coverage[pixel] = covered[r];
+        uvec2 pixel = origin + lane_pixel(r);
+        if (!is_in_viewport(pixel)) continue;
+        uint index = pixel_index(ivec2(pixel));
+        visibility[index] = floatBitsToUint(depths[r]);
+        if (COVERAGE) coverage[index] = coverage_masks[r];
     }
 }
 
@@ -56,9 +56,9 @@ void main() {
 #ifdef VERTEX
 
 void main() {
-    uint i = surfel_number();
+    uint i = surfel_index();
     Splat splat = splat_of(i);
-    place_splat(i, splat, visibility_variance(variance_of(splat)), gl_VertexIndex % 3);
+    write_splat_vertex(i, splat, visibility_variance(variance_of(splat)), gl_VertexIndex % 3);
 }
 
 #endif
@@ -67,7 +67,7 @@ void main() {
 void main() {
     vec2 m;
     float key, rank;
-    drawn_fragment(m, key, rank);
+    evaluate_fragment(m, key, rank);
     gl_FragDepth = ranked(visibility_key(key, plane_lo_disc.w, plane_epsilon.w), rank);
 }
 

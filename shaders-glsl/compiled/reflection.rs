@@ -7,7 +7,7 @@ pub static ATTRIBUTE_VERTEX: Module = Module {
     spirv: spirv!("attribute_vertex.spv"),
     constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::WEIGHTS, false)],
-    push: size_of::<layout::Window>() as u32,
+    push: size_of::<layout::Chunk>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/attribute.glsl`.
@@ -37,7 +37,7 @@ pub static ATTRIBUTE_CLIP_LINES_VERTEX: Module = Module {
     spirv: spirv!("attribute_clip_lines_vertex.spv"),
     constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 23, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false), (&resource::WEIGHTS, false)],
-    push: size_of::<layout::Window>() as u32,
+    push: size_of::<layout::Chunk>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/attribute.glsl`.
@@ -96,8 +96,8 @@ pub static COLOUR_MAP_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("colour_map_fragment.spv"),
     constants: &[6],
-    resources: &[(&resource::SCREEN, false), (&resource::NUMBER_RANGE, false), (&resource::MAP_COLOURS, false)],
-    push: size_of::<layout::Numbers>() as u32,
+    resources: &[(&resource::SCREEN, false), (&resource::VALUE_RANGE, false), (&resource::MAP_COLOURS, false)],
+    push: size_of::<layout::ScalarOptions>() as u32,
 };
 
 /// The vertex stage of `shaders-glsl/composite.glsl`.
@@ -176,8 +176,8 @@ pub static FETCH_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_compute.spv"),
     constants: &[0, 1, 5, 12, 13, 17, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
-    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
-    push: size_of::<layout::Window>() as u32,
+    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST, false), (&resource::TO_DEPTHS, true), (&resource::TO_DISPLACEMENTS, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
+    push: size_of::<layout::Chunk>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/fetch.glsl`.
@@ -186,8 +186,8 @@ pub static FETCH_LINES_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_lines_compute.spv"),
     constants: &[0, 17, 28, 29, 33, 34, 37, 38, 39],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::ALONGS, false), (&resource::VERTEX_COLOURS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
-    push: size_of::<layout::Window>() as u32,
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::LINE_DIRECTIONS, false), (&resource::VERTEX_COLOURS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, false), (&resource::TO_DEPTHS, true), (&resource::TO_DISPLACEMENTS, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
+    push: size_of::<layout::Chunk>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/fetch.glsl`.
@@ -196,18 +196,18 @@ pub static FETCH_TRIANGLES_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_triangles_compute.spv"),
     constants: &[0, 17, 28, 29, 33, 34, 37, 38, 39],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::VERTEX_COLOURS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
-    push: size_of::<layout::Window>() as u32,
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::VERTEX_COLOURS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, false), (&resource::TO_DEPTHS, true), (&resource::TO_DISPLACEMENTS, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
+    push: size_of::<layout::Chunk>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/fetch.glsl`.
-pub static FETCH_DRAWN_POINTS_COMPUTE: Module = Module {
-    name: "fetch_drawn_points_compute",
+pub static FETCH_RASTER_POINTS_COMPUTE: Module = Module {
+    name: "fetch_raster_points_compute",
     stage: ShaderStageFlags::COMPUTE,
-    spirv: spirv!("fetch_drawn_points_compute.spv"),
+    spirv: spirv!("fetch_raster_points_compute.spv"),
     constants: &[0, 1, 5, 12, 13, 17, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
-    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST_NUMBER, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
-    push: size_of::<layout::Window>() as u32,
+    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST_ID, false), (&resource::TO_DEPTHS, true), (&resource::TO_DISPLACEMENTS, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
+    push: size_of::<layout::Chunk>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/footprint.glsl`.
@@ -217,7 +217,7 @@ pub static FOOTPRINT_COMPUTE: Module = Module {
     spirv: spirv!("footprint_compute.spv"),
     constants: &[0, 1, 2, 12, 13, 14, 15, 16, 21, 23, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
     resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::COUNTS, true)],
-    push: size_of::<layout::Window>() as u32,
+    push: size_of::<layout::Chunk>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/footprint.glsl`.
@@ -227,7 +227,7 @@ pub static FOOTPRINT_TILES_COMPUTE: Module = Module {
     spirv: spirv!("footprint_tiles_compute.spv"),
     constants: &[0, 1, 2, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 21, 23, 26, 27, 37, 45, 46, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
     resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::SPLAT_ATTRIBUTES, true), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::WEIGHTS, false), (&resource::SPLAT_BOXES, true), (&resource::COUNTS, true)],
-    push: size_of::<layout::Window>() as u32,
+    push: size_of::<layout::Chunk>() as u32,
 };
 
 /// The vertex stage of `shaders-glsl/nearest.glsl`.
@@ -237,7 +237,7 @@ pub static NEAREST_VERTEX: Module = Module {
     spirv: spirv!("nearest_vertex.spv"),
     constants: &[0, 3, 5, 7, 15, 16, 17, 20, 37, 50, 51, 52, 53, 54, 57, 58],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false)],
-    push: size_of::<layout::Window>() as u32,
+    push: size_of::<layout::Chunk>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/nearest.glsl`.
@@ -267,7 +267,7 @@ pub static NEAREST_COVERAGE_VERTEX: Module = Module {
     spirv: spirv!("nearest_coverage_vertex.spv"),
     constants: &[0, 3, 5, 7, 15, 16, 17, 20, 23, 37, 50, 51, 52, 53, 54, 57, 58],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
-    push: size_of::<layout::Window>() as u32,
+    push: size_of::<layout::Chunk>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/nearest.glsl`.
@@ -287,7 +287,7 @@ pub static NEAREST_CLIP_LINES_VERTEX: Module = Module {
     spirv: spirv!("nearest_clip_lines_vertex.spv"),
     constants: &[0, 3, 5, 7, 15, 16, 17, 20, 23, 37, 50, 51, 52, 53, 54, 57, 58],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
-    push: size_of::<layout::Window>() as u32,
+    push: size_of::<layout::Chunk>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/nearest.glsl`.
@@ -397,7 +397,7 @@ pub static POINTS_VERTEX: Module = Module {
     spirv: spirv!("points_vertex.spv"),
     constants: &[0, 1, 12, 13, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
     resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false)],
-    push: size_of::<layout::Window>() as u32,
+    push: size_of::<layout::Chunk>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/points.glsl`.
@@ -417,7 +417,7 @@ pub static PROJECT_COMPUTE: Module = Module {
     spirv: spirv!("project_compute.spv"),
     constants: &[0, 1, 2, 12, 13, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
     resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST, true), (&resource::COUNTS, true)],
-    push: size_of::<layout::Window>() as u32,
+    push: size_of::<layout::Chunk>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/project.glsl`.
@@ -426,8 +426,8 @@ pub static PROJECT_LINES_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("project_lines_compute.spv"),
     constants: &[0, 28, 37],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::ALONGS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, true)],
-    push: size_of::<layout::Window>() as u32,
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::LINE_DIRECTIONS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, true)],
+    push: size_of::<layout::Chunk>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/project.glsl`.
@@ -437,27 +437,27 @@ pub static PROJECT_TRIANGLES_COMPUTE: Module = Module {
     spirv: spirv!("project_triangles_compute.spv"),
     constants: &[0, 30, 37],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::ELEMENTS, false), (&resource::LARGE_TRIANGLES, true), (&resource::NEAREST, true)],
-    push: size_of::<layout::Window>() as u32,
+    push: size_of::<layout::Chunk>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/project.glsl`.
-pub static PROJECT_DRAWN_POINTS_COMPUTE: Module = Module {
-    name: "project_drawn_points_compute",
+pub static PROJECT_RASTER_POINTS_COMPUTE: Module = Module {
+    name: "project_raster_points_compute",
     stage: ShaderStageFlags::COMPUTE,
-    spirv: spirv!("project_drawn_points_compute.spv"),
+    spirv: spirv!("project_raster_points_compute.spv"),
     constants: &[0],
-    resources: &[(&resource::FRAME, false), (&resource::NEAREST, true), (&resource::NEAREST_DEPTH, false), (&resource::NEAREST_NUMBER, false)],
+    resources: &[(&resource::FRAME, false), (&resource::NEAREST, true), (&resource::NEAREST_DEPTH, false), (&resource::NEAREST_ID, false)],
     push: 0,
 };
 
 /// The compute stage of `shaders-glsl/project.glsl`.
-pub static PROJECT_COUNTED_COMPUTE: Module = Module {
-    name: "project_counted_compute",
+pub static PROJECT_COUNT_ONLY_COMPUTE: Module = Module {
+    name: "project_count_only_compute",
     stage: ShaderStageFlags::COMPUTE,
-    spirv: spirv!("project_counted_compute.spv"),
+    spirv: spirv!("project_count_only_compute.spv"),
     constants: &[0, 1, 2, 12, 13, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
     resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::COUNTS, true)],
-    push: size_of::<layout::Window>() as u32,
+    push: size_of::<layout::Chunk>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/pull.glsl`.
@@ -466,7 +466,7 @@ pub static PULL_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("pull_compute.spv"),
     constants: &[0, 17, 28, 33, 34, 38, 39],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true), (&resource::FROM_DEPTHS, false), (&resource::FROM_PLACES, false), (&resource::FROM_NORMALS, false), (&resource::FROM_COLOURS, false), (&resource::FROM_IDS, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TO_DEPTHS, true), (&resource::TO_DISPLACEMENTS, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true), (&resource::FROM_DEPTHS, false), (&resource::FROM_DISPLACEMENTS, false), (&resource::FROM_NORMALS, false), (&resource::FROM_COLOURS, false), (&resource::FROM_IDS, false)],
     push: size_of::<layout::Step>() as u32,
 };
 
@@ -476,7 +476,7 @@ pub static PUSH_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("push_compute.spv"),
     constants: &[0, 17, 28, 32, 33, 34, 38, 39],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true), (&resource::FROM_DEPTHS, false), (&resource::FROM_PLACES, false), (&resource::FROM_NORMALS, false), (&resource::FROM_COLOURS, false), (&resource::FROM_IDS, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TO_DEPTHS, true), (&resource::TO_DISPLACEMENTS, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true), (&resource::FROM_DEPTHS, false), (&resource::FROM_DISPLACEMENTS, false), (&resource::FROM_NORMALS, false), (&resource::FROM_COLOURS, false), (&resource::FROM_IDS, false)],
     push: size_of::<layout::Step>() as u32,
 };
 
@@ -486,8 +486,8 @@ pub static RANGE_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("range_compute.spv"),
     constants: &[],
-    resources: &[(&resource::SCREEN, false), (&resource::NUMBER_RANGE, true)],
-    push: size_of::<layout::Numbers>() as u32,
+    resources: &[(&resource::SCREEN, false), (&resource::VALUE_RANGE, true)],
+    push: size_of::<layout::ScalarOptions>() as u32,
 };
 
 /// The vertex stage of `shaders-glsl/seed.glsl`.
@@ -526,7 +526,7 @@ pub static SHADE_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_compute.spv"),
     constants: &[0, 6, 7, 9, 10, 17, 28, 31, 33, 34, 35, 38, 39],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::PICTURE, true), (&resource::FINAL_DEPTHS, false), (&resource::FINAL_PLACES, false), (&resource::FINAL_NORMALS, false), (&resource::FINAL_COLOURS, false), (&resource::FINAL_IDS, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::PICTURE, true), (&resource::FINAL_DEPTHS, false), (&resource::FINAL_DISPLACEMENTS, false), (&resource::FINAL_NORMALS, false), (&resource::FINAL_COLOURS, false), (&resource::FINAL_IDS, false)],
     push: 0,
 };
 
@@ -536,7 +536,7 @@ pub static SHADE_LOOKUPS_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_lookups_compute.spv"),
     constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 33, 34, 35, 36, 38, 39],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::PICTURE, true), (&resource::FINAL_DEPTHS, false), (&resource::FINAL_PLACES, false), (&resource::FINAL_NORMALS, false), (&resource::FINAL_COLOURS, false), (&resource::FINAL_IDS, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::PICTURE, true), (&resource::FINAL_DEPTHS, false), (&resource::FINAL_DISPLACEMENTS, false), (&resource::FINAL_NORMALS, false), (&resource::FINAL_COLOURS, false), (&resource::FINAL_IDS, false)],
     push: 0,
 };
 
@@ -567,7 +567,7 @@ pub static VISIBILITY_VERTEX: Module = Module {
     spirv: spirv!("visibility_vertex.spv"),
     constants: &[0, 15, 16, 37],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false)],
-    push: size_of::<layout::Window>() as u32,
+    push: size_of::<layout::Chunk>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/visibility.glsl`.
@@ -597,7 +597,7 @@ pub static VISIBILITY_COVERAGE_VERTEX: Module = Module {
     spirv: spirv!("visibility_coverage_vertex.spv"),
     constants: &[0, 15, 16, 23, 37],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
-    push: size_of::<layout::Window>() as u32,
+    push: size_of::<layout::Chunk>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/visibility.glsl`.
@@ -617,7 +617,7 @@ pub static VISIBILITY_CLIP_LINES_VERTEX: Module = Module {
     spirv: spirv!("visibility_clip_lines_vertex.spv"),
     constants: &[0, 15, 16, 23, 37],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
-    push: size_of::<layout::Window>() as u32,
+    push: size_of::<layout::Chunk>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/visibility.glsl`.
@@ -678,8 +678,6 @@ pub mod constant {
     pub const FRAME_CORNERS: u32 = 46;
     /// `FRAME_WEIGHTS`, first in `shaders-glsl/attribute.glsl`.
     pub const FRAME_WEIGHTS: u32 = 45;
-    /// `HELD_COLOURS`, first in `shaders-glsl/attribute.glsl`.
-    pub const HELD_COLOURS: u32 = 62;
     /// `HOST_DEPTH`, first in `shaders-glsl/composite.glsl`.
     pub const HOST_DEPTH: u32 = 40;
     /// `HOST_SAMPLES`, first in `shaders-glsl/seed.glsl`.
@@ -732,8 +730,8 @@ pub mod constant {
     pub const SHADING: u32 = 6;
     /// `SLICED`, first in `shaders-glsl/attribute.glsl`.
     pub const SLICED: u32 = 47;
-    /// `SUMS_TELL`, first in `shaders-glsl/normalize.glsl`.
-    pub const SUMS_TELL: u32 = 42;
+    /// `STORED_COLOURS`, first in `shaders-glsl/attribute.glsl`.
+    pub const STORED_COLOURS: u32 = 62;
     /// `SUM_COLOURS`, first in `shaders-glsl/attribute.glsl`.
     pub const SUM_COLOURS: u32 = 17;
     /// `SUM_DEPTH`, first in `shaders-glsl/attribute.glsl`.
@@ -752,6 +750,8 @@ pub mod constant {
     pub const UNCHECKED: u32 = 61;
     /// `VERTEX_COLOURS`, first in `shaders-glsl/fetch.glsl`.
     pub const VERTEX_COLOURS: u32 = 29;
+    /// `VISIBLE_BY_SUMS`, first in `shaders-glsl/normalize.glsl`.
+    pub const VISIBLE_BY_SUMS: u32 = 42;
     /// `WEIGHTS`, first in `shaders-glsl/attribute.glsl`.
     pub const WEIGHTS: u32 = 26;
     /// `WIDEN_SMALL`, first in `shaders-glsl/attribute.glsl`.
@@ -761,15 +761,6 @@ pub mod constant {
 /// What shaders see at the bindings of their descriptor sets.
 pub mod resource {
     use super::{DescriptorType, Resource, ShaderStageFlags};
-
-    /// `Alongs`, first in `shaders-glsl/fetch.glsl`.
-    pub static ALONGS: Resource = Resource {
-        name: "Alongs",
-        set: 0,
-        binding: 13,
-        kind: DescriptorType::STORAGE_BUFFER,
-        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
-    };
 
     /// `Boxes`, first in `shaders-glsl/attribute.glsl`.
     pub static BOXES: Resource = Resource {
@@ -897,6 +888,15 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
+    /// `LineDirections`, first in `shaders-glsl/fetch.glsl`.
+    pub static LINE_DIRECTIONS: Resource = Resource {
+        name: "LineDirections",
+        set: 0,
+        binding: 13,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
     /// `MapColours`, first in `shaders-glsl/colour_map.glsl`.
     pub static MAP_COLOURS: Resource = Resource {
         name: "MapColours",
@@ -931,15 +931,6 @@ pub mod resource {
         binding: 3,
         kind: DescriptorType::STORAGE_BUFFER,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
-    };
-
-    /// `NumberRange`, first in `shaders-glsl/colour_map.glsl`.
-    pub static NUMBER_RANGE: Resource = Resource {
-        name: "NumberRange",
-        set: 0,
-        binding: 1,
-        kind: DescriptorType::STORAGE_BUFFER,
-        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::FRAGMENT.as_raw()),
     };
 
     /// `Picture`, first in `shaders-glsl/nearest.glsl`.
@@ -1050,6 +1041,15 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
+    /// `ValueRange`, first in `shaders-glsl/colour_map.glsl`.
+    pub static VALUE_RANGE: Resource = Resource {
+        name: "ValueRange",
+        set: 0,
+        binding: 1,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
     /// `VertexColours`, first in `shaders-glsl/fetch.glsl`.
     pub static VERTEX_COLOURS: Resource = Resource {
         name: "VertexColours",
@@ -1140,6 +1140,15 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
+    /// `finalDisplacements`, first in `shaders-glsl/shade.glsl`.
+    pub static FINAL_DISPLACEMENTS: Resource = Resource {
+        name: "finalDisplacements",
+        set: 2,
+        binding: 1,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
     /// `finalIds`, first in `shaders-glsl/shade.glsl`.
     pub static FINAL_IDS: Resource = Resource {
         name: "finalIds",
@@ -1154,15 +1163,6 @@ pub mod resource {
         name: "finalNormals",
         set: 2,
         binding: 2,
-        kind: DescriptorType::STORAGE_BUFFER,
-        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
-    };
-
-    /// `finalPlaces`, first in `shaders-glsl/shade.glsl`.
-    pub static FINAL_PLACES: Resource = Resource {
-        name: "finalPlaces",
-        set: 2,
-        binding: 1,
         kind: DescriptorType::STORAGE_BUFFER,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
@@ -1185,6 +1185,15 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
+    /// `fromDisplacements`, first in `shaders-glsl/pull.glsl`.
+    pub static FROM_DISPLACEMENTS: Resource = Resource {
+        name: "fromDisplacements",
+        set: 3,
+        binding: 1,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
     /// `fromIds`, first in `shaders-glsl/pull.glsl`.
     pub static FROM_IDS: Resource = Resource {
         name: "fromIds",
@@ -1199,15 +1208,6 @@ pub mod resource {
         name: "fromNormals",
         set: 3,
         binding: 2,
-        kind: DescriptorType::STORAGE_BUFFER,
-        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
-    };
-
-    /// `fromPlaces`, first in `shaders-glsl/pull.glsl`.
-    pub static FROM_PLACES: Resource = Resource {
-        name: "fromPlaces",
-        set: 3,
-        binding: 1,
         kind: DescriptorType::STORAGE_BUFFER,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
@@ -1230,9 +1230,9 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `nearest_number`, first in `shaders-glsl/fetch.glsl`.
-    pub static NEAREST_NUMBER: Resource = Resource {
-        name: "nearest_number",
+    /// `nearest_id`, first in `shaders-glsl/fetch.glsl`.
+    pub static NEAREST_ID: Resource = Resource {
+        name: "nearest_id",
         set: 1,
         binding: 8,
         kind: DescriptorType::SAMPLED_IMAGE,
@@ -1329,6 +1329,15 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
+    /// `toDisplacements`, first in `shaders-glsl/fetch.glsl`.
+    pub static TO_DISPLACEMENTS: Resource = Resource {
+        name: "toDisplacements",
+        set: 2,
+        binding: 1,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
     /// `toIds`, first in `shaders-glsl/fetch.glsl`.
     pub static TO_IDS: Resource = Resource {
         name: "toIds",
@@ -1343,15 +1352,6 @@ pub mod resource {
         name: "toNormals",
         set: 2,
         binding: 2,
-        kind: DescriptorType::STORAGE_BUFFER,
-        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
-    };
-
-    /// `toPlaces`, first in `shaders-glsl/fetch.glsl`.
-    pub static TO_PLACES: Resource = Resource {
-        name: "toPlaces",
-        set: 2,
-        binding: 1,
         kind: DescriptorType::STORAGE_BUFFER,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
@@ -1378,6 +1378,40 @@ pub mod resource {
 /// The blocks and structs of the shaders, byte for byte.
 #[allow(non_snake_case, non_camel_case_types)]
 pub mod layout {
+    /// `Chunk`, 36 bytes, first in `shaders-glsl/attribute.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct Chunk {
+        /// Byte 0.
+        pub count: u32,
+        /// Byte 4.
+        pub first_id: u32,
+        /// Byte 8.
+        pub capacity: u32,
+        /// Byte 12.
+        pub instance_stride: u32,
+        /// Byte 16.
+        pub clip_stride: u32,
+        /// Byte 20.
+        pub first_instance: u32,
+        /// Byte 24.
+        pub first_clip: u32,
+        /// Byte 28.
+        pub attribute_rows: u32,
+        /// Byte 32.
+        pub instance_count: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(Chunk, count) == 0);
+    const _: () = assert!(std::mem::offset_of!(Chunk, first_id) == 4);
+    const _: () = assert!(std::mem::offset_of!(Chunk, capacity) == 8);
+    const _: () = assert!(std::mem::offset_of!(Chunk, instance_stride) == 12);
+    const _: () = assert!(std::mem::offset_of!(Chunk, clip_stride) == 16);
+    const _: () = assert!(std::mem::offset_of!(Chunk, first_instance) == 20);
+    const _: () = assert!(std::mem::offset_of!(Chunk, first_clip) == 24);
+    const _: () = assert!(std::mem::offset_of!(Chunk, attribute_rows) == 28);
+    const _: () = assert!(std::mem::offset_of!(Chunk, instance_count) == 32);
+    const _: () = assert!(std::mem::size_of::<Chunk>() == 36);
+
     /// `Composite`, 32 bytes, first in `shaders-glsl/composite.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -1499,18 +1533,18 @@ pub mod layout {
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Level {
         /// Byte 0.
-        pub from: u32,
+        pub finer_start: u32,
         /// Byte 4.
-        pub to: u32,
+        pub start: u32,
         /// Byte 8.
-        pub nodes: u32,
+        pub count: u32,
         /// Byte 12.
-        pub finer: u32,
+        pub finer_count: u32,
     }
-    const _: () = assert!(std::mem::offset_of!(Level, from) == 0);
-    const _: () = assert!(std::mem::offset_of!(Level, to) == 4);
-    const _: () = assert!(std::mem::offset_of!(Level, nodes) == 8);
-    const _: () = assert!(std::mem::offset_of!(Level, finer) == 12);
+    const _: () = assert!(std::mem::offset_of!(Level, finer_start) == 0);
+    const _: () = assert!(std::mem::offset_of!(Level, start) == 4);
+    const _: () = assert!(std::mem::offset_of!(Level, count) == 8);
+    const _: () = assert!(std::mem::offset_of!(Level, finer_count) == 12);
     const _: () = assert!(std::mem::size_of::<Level>() == 16);
 
     /// `Materials`, 4 bytes, first in `shaders-glsl/shade.glsl`.
@@ -1523,31 +1557,18 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Materials, count) == 0);
     const _: () = assert!(std::mem::size_of::<Materials>() == 4);
 
-    /// `NumberRange`, 8 bytes, first in `shaders-glsl/colour_map.glsl`.
+    /// `ScalarOptions`, 8 bytes, first in `shaders-glsl/colour_map.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-    pub struct NumberRange {
-        /// Byte 0.
-        pub least: u32,
-        /// Byte 4.
-        pub greatest: u32,
-    }
-    const _: () = assert!(std::mem::offset_of!(NumberRange, least) == 0);
-    const _: () = assert!(std::mem::offset_of!(NumberRange, greatest) == 4);
-    const _: () = assert!(std::mem::size_of::<NumberRange>() == 8);
-
-    /// `Numbers`, 8 bytes, first in `shaders-glsl/colour_map.glsl`.
-    #[repr(C)]
-    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-    pub struct Numbers {
+    pub struct ScalarOptions {
         /// Byte 0.
         pub least_alpha: f32,
         /// Byte 4.
         pub opaque: u32,
     }
-    const _: () = assert!(std::mem::offset_of!(Numbers, least_alpha) == 0);
-    const _: () = assert!(std::mem::offset_of!(Numbers, opaque) == 4);
-    const _: () = assert!(std::mem::size_of::<Numbers>() == 8);
+    const _: () = assert!(std::mem::offset_of!(ScalarOptions, least_alpha) == 0);
+    const _: () = assert!(std::mem::offset_of!(ScalarOptions, opaque) == 4);
+    const _: () = assert!(std::mem::size_of::<ScalarOptions>() == 8);
 
     /// `ScreenClip`, 32 bytes, first in `shaders-glsl/attribute.glsl`.
     #[repr(C)]
@@ -1592,9 +1613,9 @@ pub mod layout {
         /// Byte 16.
         pub variance: f32,
         /// Byte 20.
-        pub turn: f32,
+        pub axis_residual: f32,
         /// Byte 24.
-        pub place: u32,
+        pub anchor: u32,
         /// Byte 28.
         pub epsilon: f32,
         /// Byte 32.
@@ -1609,8 +1630,8 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Splat, offset) == 0);
     const _: () = assert!(std::mem::offset_of!(Splat, axis) == 8);
     const _: () = assert!(std::mem::offset_of!(Splat, variance) == 16);
-    const _: () = assert!(std::mem::offset_of!(Splat, turn) == 20);
-    const _: () = assert!(std::mem::offset_of!(Splat, place) == 24);
+    const _: () = assert!(std::mem::offset_of!(Splat, axis_residual) == 20);
+    const _: () = assert!(std::mem::offset_of!(Splat, anchor) == 24);
     const _: () = assert!(std::mem::offset_of!(Splat, epsilon) == 28);
     const _: () = assert!(std::mem::offset_of!(Splat, plane_hi) == 32);
     const _: () = assert!(std::mem::offset_of!(Splat, sqrt_det) == 44);
@@ -1657,6 +1678,19 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Texture, levels) == 8);
     const _: () = assert!(std::mem::size_of::<Texture>() == 12);
 
+    /// `ValueRange`, 8 bytes, first in `shaders-glsl/colour_map.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct ValueRange {
+        /// Byte 0.
+        pub least: u32,
+        /// Byte 4.
+        pub greatest: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(ValueRange, least) == 0);
+    const _: () = assert!(std::mem::offset_of!(ValueRange, greatest) == 4);
+    const _: () = assert!(std::mem::size_of::<ValueRange>() == 8);
+
     /// `View`, 432 bytes, first in `shaders-glsl/attribute.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -1682,7 +1716,7 @@ pub mod layout {
         /// Byte 288.
         pub to_light: [[f32; 4]; 4],
         /// Byte 352.
-        pub turn: [[f32; 4]; 3],
+        pub rotation: [[f32; 4]; 3],
         /// Byte 400.
         pub scale: f32,
         /// Byte 404.
@@ -1692,7 +1726,7 @@ pub mod layout {
         /// Byte 412.
         pub jacobian: f32,
         /// Byte 416.
-        pub first: u32,
+        pub first_id: u32,
         /// Unused: the layout leaves a gap here.
         pub _pad16: [u8; 12],
     }
@@ -1706,12 +1740,12 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(View, forward_lo) == 240);
     const _: () = assert!(std::mem::offset_of!(View, flat_rows) == 256);
     const _: () = assert!(std::mem::offset_of!(View, to_light) == 288);
-    const _: () = assert!(std::mem::offset_of!(View, turn) == 352);
+    const _: () = assert!(std::mem::offset_of!(View, rotation) == 352);
     const _: () = assert!(std::mem::offset_of!(View, scale) == 400);
     const _: () = assert!(std::mem::offset_of!(View, near) == 404);
     const _: () = assert!(std::mem::offset_of!(View, key_slope) == 408);
     const _: () = assert!(std::mem::offset_of!(View, jacobian) == 412);
-    const _: () = assert!(std::mem::offset_of!(View, first) == 416);
+    const _: () = assert!(std::mem::offset_of!(View, first_id) == 416);
     const _: () = assert!(std::mem::size_of::<View>() == 432);
 
     /// `Views`, 15984 bytes, first in `shaders-glsl/attribute.glsl`.
@@ -1723,39 +1757,5 @@ pub mod layout {
     }
     const _: () = assert!(std::mem::offset_of!(Views, views) == 0);
     const _: () = assert!(std::mem::size_of::<Views>() == 15984);
-
-    /// `Window`, 36 bytes, first in `shaders-glsl/attribute.glsl`.
-    #[repr(C)]
-    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-    pub struct Window {
-        /// Byte 0.
-        pub count: u32,
-        /// Byte 4.
-        pub first: u32,
-        /// Byte 8.
-        pub capacity: u32,
-        /// Byte 12.
-        pub room: u32,
-        /// Byte 16.
-        pub clips: u32,
-        /// Byte 20.
-        pub instance: u32,
-        /// Byte 24.
-        pub first_clip: u32,
-        /// Byte 28.
-        pub attribute_rows: u32,
-        /// Byte 32.
-        pub present: u32,
-    }
-    const _: () = assert!(std::mem::offset_of!(Window, count) == 0);
-    const _: () = assert!(std::mem::offset_of!(Window, first) == 4);
-    const _: () = assert!(std::mem::offset_of!(Window, capacity) == 8);
-    const _: () = assert!(std::mem::offset_of!(Window, room) == 12);
-    const _: () = assert!(std::mem::offset_of!(Window, clips) == 16);
-    const _: () = assert!(std::mem::offset_of!(Window, instance) == 20);
-    const _: () = assert!(std::mem::offset_of!(Window, first_clip) == 24);
-    const _: () = assert!(std::mem::offset_of!(Window, attribute_rows) == 28);
-    const _: () = assert!(std::mem::offset_of!(Window, present) == 32);
-    const _: () = assert!(std::mem::size_of::<Window>() == 36);
 
 }

@@ -1,14 +1,14 @@
-// Boxes: the pixels that a splat, or the splats of a node of the hierarchy above them, can have fragments at, and how near.
+// Boxes: bounding boxes, in pixels and depth, of the fragments of a splat or of the splats below a node of the hierarchy.
 
 #ifndef LIB_BOX
 #define LIB_BOX
 
-// low | high: x in the lower 16 bits, y in the upper; the bits of the nearest κ; of a splat the number of its clip on the screen, or NO_CLIP.
+// Two corners, x in the lower 16 bits, y in the upper; bits of the nearest κ; of a splat, the index of its screen clip or NO_CLIP.
 #define Box uvec4
 
 const uint NO_CLIP = ~0u;
 
-// Holds no pixel.
+// Contains no pixel.
 const Box EMPTY_BOX = Box(0xffffffffu, 0u, 0u, NO_CLIP);
 
 #if defined(BOX_ACCESS) && defined(SUBGROUPS)
@@ -31,13 +31,13 @@ Box box_of(ivec2 low, ivec2 high, float nearest, uint clip) {
     return Box(l.x | l.y << 16, h.x | h.y << 16, floatBitsToUint(max(nearest, 0.0)), clip);
 }
 
-// Whether it has pixels of those from `low` to `high`.
-bool meets(Box box, uvec2 low, uvec2 high) {
-    uvec4 sides = uvec4(box.x & 0xffffu, box.x >> 16, box.y & 0xffffu, box.y >> 16);
-    return all(lessThanEqual(sides.xy, high)) && all(greaterThanEqual(sides.zw, low));
+// Whether the box overlaps the pixels from `low` to `high`, inclusive.
+bool overlaps(Box box, uvec2 low, uvec2 high) {
+    uvec4 bounds = uvec4(box.x & 0xffffu, box.x >> 16, box.y & 0xffffu, box.y >> 16);
+    return all(lessThanEqual(bounds.xy, high)) && all(greaterThanEqual(bounds.zw, low));
 }
 
-float nearest_in(Box box) {
+float nearest_key(Box box) {
     return uintBitsToFloat(box.z);
 }
 

@@ -1,9 +1,9 @@
-// Colours as a scene holds them: 8 bits a channel in a word, of sRGB or linear, three linear floats, linear half floats in two words, or, with
-// a texture, coordinates in it and for those who do not look there the linear colour.
+// Colour formats of scenes: 8 bits per channel in a word, sRGB or linear; three linear floats; linear half floats in two words; or with a
+// texture, coordinates in it followed by the linear colour.
 
 const uint COLOURS_NONE = 0, COLOURS_SRGB8 = 1, COLOURS_LINEAR = 2, COLOURS_TEXTURED = 3, COLOURS_UNORM8 = 4, COLOURS_HALF = 5;
 
-// Words from one to the next where they lie side by side.
+// Words per colour of a tightly packed stream.
 uint colour_words(uint kind) {
     if (kind == COLOURS_LINEAR) return 3;
     if (kind == COLOURS_TEXTURED) return 5;
@@ -14,7 +14,7 @@ vec3 srgb_to_linear(vec3 c) {
     return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
 }
 
-// NAME(i): colour i, linear, of a stream of this KIND in WORDS, from OFFSET on, STRIDE words apart.
+// NAME(i): colour i, linear, of a stream of this KIND in WORDS, which starts at OFFSET and is STRIDE words apart.
 #define DEFINE_COLOURS(NAME, KIND, WORDS, OFFSET, STRIDE)                                                              \
     vec3 NAME(uint i) {                                                                                                \
         if (KIND == COLOURS_NONE) return frame.albedo.rgb;                                                             \
@@ -26,6 +26,6 @@ vec3 srgb_to_linear(vec3 c) {
         return uintBitsToFloat(uvec3(WORDS[k], WORDS[k + 1], WORDS[k + 2]));                                           \
     }
 
-// NAME(i): coordinates i in the texture, of such a stream.
+// NAME(i): texture coordinates i of such a stream.
 #define DEFINE_COORDINATES(NAME, WORDS) \
     vec2 NAME(uint i) { return uintBitsToFloat(uvec2(WORDS[5 * i], WORDS[5 * i + 1])); }

@@ -1,20 +1,20 @@
-// The ellipse that a splat is on the screen, from sums of squares: no inverse, so it is as stable edge-on as face-on (zwicker2004
+// Ellipse of a splat on the screen, from sums of squares: without a matrix inverse it is as stable edge-on as face-on (zwicker2004
 // §4.3–4.4, restated).
 
-// A disc's image: a Gaussian's centre (px, relative to the disc centre's image), the unit major axis of its variance V and V's
-// eigenvalues (px²). What follows is 0 but where lib/fine_conic.glsl knows it: what rounding took from the offset, and how far V's axis is
-// turned from the rounded one (rad).
+// Projection of a disc: centre of the Gaussian (px, relative to the projected disc centre), unit major axis of its variance V and V's
+// eigenvalues (px²). Only lib/fine_conic.glsl sets the rest: the rounding error of the offset, and the angle from the rounded axis to V's
+// (rad).
 struct Conic {
     vec2 offset;
     vec2 axis;
     vec2 variance;
     vec2 offset_lo;
-    float turn;
+    float axis_residual;
 };
 
-// V by its entries; sqrt_det = √|V|, px².
+// Conic of a variance V; sqrt_det = √|V|, px².
 Conic conic_of_variance(vec2 o, float xx, float xy, float yy, float sqrt_det) {
-    // In units of the larger variance, so that squares neither overflow nor vanish.
+    // Scaled by the larger variance, so that squares neither overflow nor underflow.
     float unit = max(max(xx, yy), 1e-37);
     float half_difference = 0.5 * (xx - yy) / unit;
     xy /= unit;
@@ -22,7 +22,7 @@ Conic conic_of_variance(vec2 o, float xx, float xy, float yy, float sqrt_det) {
     vec2 axis = half_difference >= 0.0 ? vec2(half_difference + radius, xy) : vec2(xy, radius - half_difference);
     axis = radius > 0.0 ? normalize(axis) : vec2(1.0, 0.0);
 
-    // The smaller eigenvalue by the determinant's closed form: as a difference it would be lost on a long thin ellipse.
+    // The smaller eigenvalue by the determinant's closed form: a difference would cancel for a thin ellipse.
     float major = 0.5 * (xx + yy) + radius * unit;
     return Conic(o, axis, vec2(major, sqrt_det * (sqrt_det / major)), vec2(0.0), 0.0);
 }

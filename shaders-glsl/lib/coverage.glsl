@@ -1,21 +1,22 @@
-// Coverage: which of 16 samples of each pixel lie on a surface, hidden or not: neighbouring splats together cover what none covers alone.
+// Coverage: mask of the 16 samples of a pixel that lie on a surface, hidden or not: neighbouring splats together cover pixels that none
+// covers alone.
 
 #include "lib/lattice.glsl"
 
 const uint ALL_SAMPLES = (1u << SAMPLES) - 1;
 
-// How much of a footprint is surface: discs are drawn 1.3 times as large as they need be to leave no holes.
+// Solid part of a footprint: discs are 1.3 times as large as needed, to leave no holes.
 const float SOLID = 0.77;
-// Least variance of what is surface, px²: edge-on it has none.
+// Least variance of the solid ellipse, px²: an edge-on disc has none.
 const float LEAST_SOLID = 1e-12;
-// What discs on either side of an edge share of it, px: more than rounding can part them by.
+// Overlap of discs on both sides of an edge, px: more than the rounding error between them.
 const float SEAM = 1.0 / 256.0;
 
-uint nearest_sample(vec2 to) {
+uint nearest_sample(vec2 position) {
     uint nearest = 0;
     float least = 2.0;
     for (uint k = 0; k < SAMPLES; k++) {
-        vec2 d = sample_at(k) - to;
+        vec2 d = sample_position(k) - position;
         if (dot(d, d) < least) {
             least = dot(d, d);
             nearest = k;
@@ -24,12 +25,12 @@ uint nearest_sample(vec2 to) {
     return nearest;
 }
 
-// The ellipse of a splat's own variance: filters widen what is seen of a surface, not the surface.
-Ellipse solid_of(Splat splat, uint clip) {
+// Solid ellipse of a splat, without low-pass filters: these widen the splat, not the surface.
+Ellipse solid_ellipse(Splat splat, uint clip) {
     return ellipse_of(splat, max(variance_of(splat), LEAST_SOLID), clip);
 }
 
-// The samples that a splat covers at a pixel centre where it has a fragment; `solid` is its ellipse by solid_of.
+// Mask of the samples that a splat covers at a pixel centre where it has a fragment; `solid` is its solid_ellipse.
 uint coverage_mask(Ellipse solid, vec2 pixel) {
     vec2 d = pixel - solid.anchor;
     vec2 e = d - solid.offset;
@@ -38,23 +39,23 @@ uint coverage_mask(Ellipse solid, vec2 pixel) {
     if (on_plane()) nearness = vec3(plane_at(solid.plane_hi, solid.plane_lo, d), solid.plane_hi.yz) / solid.key_centre;
     uint mask = 0;
     for (uint k = 0; k < SAMPLES; k++) {
-        vec2 s = sample_at(k);
+        vec2 s = sample_position(k);
         vec2 u = vec2(dot(solid.whitening.xy, e + s), dot(solid.whitening.zw, e + s));
         if (on_plane()) u /= clamp(nearness.x + dot(nearness.yz, s), 1.0 / MOST_STRETCH, MOST_STRETCH);
         bool inside = rim() > 1.0 ? max(abs(u.x), abs(u.y)) <= limit : dot(u, u) <= limit * limit;
         if (has_clip(solid.clip)) inside = inside && clip_distance(screen_clip(solid.clip), d + s) >= -SEAM;
         mask |= uint(inside) << k;
     }
-    // Where a splat is, there is surface, however little.
+    // A splat covers at least one sample of the pixel that contains its centre.
     if (mask == 0 && max(abs(e.x), abs(e.y)) <= 0.5) mask = 1u << nearest_sample(-e);
     return mask;
 }
 
 #ifdef FRAGMENT
-layout(set = 1, binding = 5, std430) buffer Coverage { uint coverage[]; }; // the 16 samples of each pixel, a bit each
+layout(set = 1, binding = 5, std430) buffer Coverage { uint coverage[]; }; // the 16 samples of each pixel, one bit each
 
-// Adds what a splat covers at a pixel centre where it has a fragment.
-void cover(uint index, Ellipse solid, vec2 pixel) {
+// Adds the samples that a splat covers at a pixel centre where it has a fragment.
+void add_coverage(uint index, Ellipse solid, vec2 pixel) {
     uint covered = coverage[index];
     if (covered == ALL_SAMPLES) return;
     uint mask = coverage_mask(solid, pixel);

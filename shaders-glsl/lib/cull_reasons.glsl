@@ -1,9 +1,9 @@
-// Cull reasons: why a surfel is not drawn, counted in this order; DRAWN is none.
+// Cull reasons of surfels, and their counters in this order; DRAWN if not culled.
 
-const uint BEHIND = 0;    // the centre is not in front of the eye; a point's not between near and far plane
-const uint EYE_PLANE = 1; // the disc reaches the eye plane, or all but does
-const uint BACK = 2;      // the normal faces away, such are culled, and the surfel is not two-sided
-const uint OUTSIDE = 3;   // off the picture, or without an area on it
+const uint BEHIND = 0;    // the centre is not in front of the eye; of a point, not between the near and the far plane
+const uint EYE_PLANE = 1; // the disc reaches the eye plane, or nearly does
+const uint BACK = 2;      // the normal faces away, back faces are culled, and the surfel is not two-sided
+const uint OUTSIDE = 3;   // outside the viewport, or without an area on it
 const uint INVALID = 4;   // marked by a radius of 0, or with an image too large for floats
 const uint DRAWN = 5;
 

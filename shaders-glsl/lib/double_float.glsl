@@ -23,8 +23,8 @@ vec2 add(vec2 a, vec2 b) {
     vec2 sum = two_sum(a.x, b.x);
     precise float low = sum.y + (a.y + b.y);
     precise float high = sum.x + low;
-    precise float rest = low - (high - sum.x);
-    return vec2(high, rest);
+    precise float error = low - (high - sum.x);
+    return vec2(high, error);
 }
 
 // a · b, where b is a single float.
@@ -51,6 +51,6 @@ vec2 dot_double(vec3 a_hi, vec3 a_lo, vec3 b_hi, vec3 b_lo) {
     vec2 xyz = two_sum(xy.x, z.x);
     precise float low = (x.y + y.y) + z.y + (xy.y + xyz.y) + (dot(a_hi, b_lo) + dot(a_lo, b_hi));
     precise float high = xyz.x + low;
-    precise float rest = low - (high - xyz.x);
-    return vec2(high, rest);
+    precise float error = low - (high - xyz.x);
+    return vec2(high, error);
 }

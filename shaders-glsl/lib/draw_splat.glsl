@@ -1,4 +1,4 @@
-// A splat as one triangle about its cut-off ellipse. Varyings are flat; fragments evaluate from gl_FragCoord.
+// Splats on the raster path: one triangle around each cut-off ellipse. Varyings are flat; fragments evaluate them at gl_FragCoord.
 
 #ifdef VERTEX
 
@@ -6,7 +6,7 @@ layout(location = 0) flat out vec4 anchor_offset;
 layout(location = 1) flat out vec4 whitening;
 layout(location = 2) flat out vec4 plane_epsilon;
 layout(location = 3) flat out vec4 plane_lo_disc;
-#ifdef SEES_CLIPS
+#ifdef READS_CLIPS
 layout(location = 9) flat out uint clip_out;
 #endif
 layout(location = 11) flat out mat2x4 fine;
@@ -14,19 +14,19 @@ layout(location = 11) flat out mat2x4 fine;
 layout(location = 10) flat out vec4 solid_whitening;
 #endif
 
-// More than the rasterizer's snapping of vertices, at least 1/16 px, could take from an edge.
-const float EDGE = 0.125;
-// A triangle that reaches further than this (px) is replaced by one over the viewport, whose edges stay exact.
-const float LARGEST = 8192.0;
+// Margin of a triangle, px, above the error of vertices that the rasterizer snaps to at most 1/16 px.
+const float EDGE_MARGIN = 0.125;
+// Largest extent of a triangle, px: a larger one is replaced by a triangle over the viewport, whose edges stay exact.
+const float LARGEST_TRIANGLE = 8192.0;
 
-// A corner, px, of a triangle about the ellipse with these semi-axes, px, as far as it is on the picture. A triangle that does not reach beyond
-// the picture is not clipped, which rasterizers on the CPU do in another way with all triangles of a draw.
+// Corner, px, of a triangle around the part inside the viewport of the ellipse with these semi-axes, px. A triangle inside the viewport is
+// not clipped; CPU rasterizers take a slower path for all triangles of a draw if one is.
 vec2 corner_about(vec2 centre, vec2 axis, vec2 reach, int corner) {
     vec2 major = reach.x * axis, minor = reach.y * vec2(-axis.y, axis.x);
     vec2 corners[3] = vec2[](centre + 2.0 * minor, centre - 1.7320508 * major - minor, centre + 1.7320508 * major - minor);
     vec2 low = min(min(corners[0], corners[1]), corners[2]), high = max(max(corners[0], corners[1]), corners[2]);
     if (all(greaterThanEqual(low, vec2(0.0))) && all(lessThanEqual(high, frame.viewport))) return corners[corner];
-    // The box of what is on the picture, in a right-angled triangle of twice its width and height.
+    // Right triangle around the bounding box inside the viewport, of twice its width and height.
     vec2 reach_of_box = sqrt(major * major + minor * minor);
     low = clamp(centre - reach_of_box, vec2(0.0), frame.viewport);
     high = clamp(centre + reach_of_box, vec2(0.0), frame.viewport);
@@ -36,33 +36,33 @@ vec2 corner_about(vec2 centre, vec2 axis, vec2 reach, int corner) {
     return vec2(corner == 1 ? far.x : near.x, corner == 2 ? far.y : near.y);
 }
 
-// Places a corner of splat i's footprint of the given variance.
-void place_splat(uint i, Splat splat, vec2 variance, int corner) {
-    uint clip = screen_clip_number(i);
-#ifdef SEES_CLIPS
+// Writes a vertex of the triangle of splat i with the given variance.
+void write_splat_vertex(uint i, Splat splat, vec2 variance, int corner) {
+    uint clip = screen_clip_index(i);
+#ifdef READS_CLIPS
     clip_out = clip;
 #endif
     Ellipse ellipse = ellipse_of(splat, variance, clip);
     anchor_offset = vec4(ellipse.anchor, ellipse.offset);
     whitening = ellipse.whitening;
     fine = ellipse.fine;
-    // Distances as fragments see them: in the world's unit.
+    // Fragment shaders read distances in the world's unit.
     if (INSTANCED && has_linear_depth()) scale_plane(view.scale, ellipse.plane_hi, ellipse.plane_lo);
     plane_epsilon = vec4(ellipse.plane_hi, splat.epsilon);
     plane_lo_disc = vec4(ellipse.plane_lo, splat.key_disc);
 #ifdef COVERAGE
-    solid_whitening = solid_of(splat, clip).whitening;
+    solid_whitening = solid_ellipse(splat, clip).whitening;
 #endif
 
-    // The nearest depth in the ellipse bounds every fragment's, which lets a device reject the triangle early.
+    // The nearest depth in the ellipse bounds every fragment's: conservative depth for early tests.
     float stretch = stretch_of(splat, variance, ellipse.key_centre);
     float nearest = min(1.0, nearest_of(splat, variance, stretch));
 
-    vec2 reach = stretch * frame.cutoff * sqrt(variance) + EDGE;
+    vec2 reach = stretch * frame.cutoff * sqrt(variance) + EDGE_MARGIN;
     vec2 position;
     if (!is_drawn(splat) || nearest <= frame.key_far) {
-        position = vec2(0.0); // all corners alike: no fragments
-    } else if (reach.x > 0.5 * LARGEST) {
+        position = vec2(0.0); // degenerate: no fragments
+    } else if (reach.x > 0.5 * LARGEST_TRIANGLE) {
         position = vec2(corner == 1 ? 3.0 : -1.0, corner == 2 ? 3.0 : -1.0);
     } else {
         vec2 pixel = corner_about(ellipse.anchor + splat.offset, splat.axis, reach, corner);
@@ -78,7 +78,7 @@ layout(location = 0) flat in vec4 anchor_offset;
 layout(location = 1) flat in vec4 whitening;
 layout(location = 2) flat in vec4 plane_epsilon;
 layout(location = 3) flat in vec4 plane_lo_disc;
-#ifdef SEES_CLIPS
+#ifdef READS_CLIPS
 layout(location = 9) flat in uint clip;
 #else
 const uint clip = ~0u;
@@ -89,12 +89,12 @@ layout(location = 10) flat in vec4 solid_whitening;
 #endif
 
 #ifndef COVERAGE
-// The bound given by the vertex stage holds: κ only falls from there. Hidden fragments cover too, so that none may be skipped by it.
+// The vertex stage bounds κ from above. With COVERAGE, hidden fragments cover samples too, so no early test may discard them.
 layout(depth_less) out float gl_FragDepth;
 #endif
 
-// As splat_fragment; where there is no fragment, there is none.
-void drawn_fragment(out vec2 m, out float key, out float rank) {
+// Evaluates splat_fragment; discards the fragment if it is outside.
+void evaluate_fragment(out vec2 m, out float key, out float rank) {
     float key_centre = centre_key(plane_epsilon.xyz, plane_lo_disc.xyz, anchor_offset.zw);
     Ellipse ellipse = Ellipse(
         anchor_offset.xy, anchor_offset.zw, whitening, fine, plane_epsilon.xyz, plane_lo_disc.xyz, key_centre, clip);
@@ -103,7 +103,7 @@ void drawn_fragment(out vec2 m, out float key, out float rank) {
 #ifdef COVERAGE
     uvec2 pixel = uvec2(centre);
     ellipse.whitening = solid_whitening;
-    cover(pixel.y * uint(frame.viewport.x) + pixel.x, ellipse, centre);
+    add_coverage(pixel.y * uint(frame.viewport.x) + pixel.x, ellipse, centre);
 #endif
 }
 

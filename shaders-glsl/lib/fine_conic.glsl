@@ -1,19 +1,18 @@
-// The ellipse of lib/conic.glsl from sums of two floats. A kernel with a steep rim wants it: floats turn the ellipse by 10⁻⁷, which at the
-// tips of one that is seen edge-on moves the rim by as many times its slenderness.
+// Ellipse of lib/conic.glsl from sums of two floats, for kernels with a steep rim: floats rotate the ellipse by 10⁻⁷, which moves the rim
+// at the tips of an edge-on ellipse by that times its slenderness.
 
-// What a pixel coordinate, or w, changes by along the disc, in units of the radius: a vector of the world, and its products with the
-// normal and with the major axis.
+// Gradient of a pixel coordinate, or w, on the disc, per radius: a world vector, and its products with the normal and the major axis.
 struct Gradient {
     vec3 hi, lo;
     vec2 normal;
     vec2 major;
 };
 
-// The metric of a disc: sums over its semi-axes e of (a·e)(b·e), for vectors a and b of the world, from n and not from the axes.
+// Metric of a disc: sums over its semi-axes e of (a·e)(b·e), for world vectors a and b, computed from n and not from the axes.
 struct Metric {
-    vec2 per_normal; // 1 / n·n: floats make n no unit vector
+    vec2 per_normal; // 1 / n·n: in floats n is not exactly a unit vector
     vec2 tilt;       // n·major / n·n
-    vec2 per_major;  // what the longer axis adds to a circle's, whose radius is the shorter
+    vec2 per_major;  // added by the longer axis to the circle of the shorter one's radius
     vec2 aspect2;
 };
 
@@ -32,7 +31,7 @@ Metric metric_of(Disc disc) {
     return metric;
 }
 
-// Of row i of the projection, at the pixel coordinate `centre`, per `size`.
+// Gradient of row i of the projection at the pixel coordinate `centre`, times `size`.
 Gradient gradient_of(int i, vec2 centre, vec2 size, Disc disc, Metric metric) {
     Gradient gradient;
     for (int k = 0; k < 3; k++) {
@@ -50,27 +49,27 @@ Gradient gradient_of(int i, vec2 centre, vec2 size, Disc disc, Metric metric) {
     return gradient;
 }
 
-// The metric's product of a and b.
+// Inner product of a and b in the metric.
 vec2 along_disc(Metric metric, Gradient a, Gradient b) {
-    vec2 all = dot_double(a.hi, a.lo, b.hi, b.lo);
-    vec2 circle = add(all, -multiply(multiply(a.normal, b.normal), metric.per_normal));
+    vec2 product = dot_double(a.hi, a.lo, b.hi, b.lo);
+    vec2 circle = add(product, -multiply(multiply(a.normal, b.normal), metric.per_normal));
     if (!ELLIPSES) return circle;
     return add(multiply(circle, metric.aspect2), multiply(multiply(a.major, b.major), metric.per_major));
 }
 
-// Largest turn, rad. Rounding turns a near-circle by more, but does not show there.
-const float MOST_TURN = 1e-4;
+// Largest residual, rad. Rounding rotates a near-circle by more, without effect.
+const float MOST_RESIDUAL = 1e-4;
 
-// How far the axis of the variance is turned from the conic's: its covariance with the minor axis, over the difference of the eigenvalues.
-float turn_of(Conic conic, vec2 xx, vec2 xy, vec2 yy) {
+// Angle from the conic's axis to the variance's: its covariance with the minor axis, over the difference of the eigenvalues.
+float axis_residual_of(Conic conic, vec2 xx, vec2 xy, vec2 yy) {
     vec2 a = conic.axis;
     vec2 diagonal = multiply(add(yy, -xx), two_product(a.x, a.y));
     vec2 other = multiply(xy, add(two_product(a.x, a.x), -two_product(a.y, a.y)));
     float difference = conic.variance.x - conic.variance.y;
-    return difference > 0.0 ? clamp(add(diagonal, other).x / difference, -MOST_TURN, MOST_TURN) : 0.0;
+    return difference > 0.0 ? clamp(add(diagonal, other).x / difference, -MOST_RESIDUAL, MOST_RESIDUAL) : 0.0;
 }
 
-// As conic_of of the same disc; o, q and V are restated in the metric, with w = 1.
+// Computes conic_of of the same disc; o, q and V are restated in the metric, with w = 1.
 Conic fine_conic(Disc disc, float sqrt_det) {
     Metric metric = metric_of(disc);
     vec2 size = divide(vec2(disc.radius, 0.0), scale(disc.w, frame.cutoff));
@@ -81,7 +80,7 @@ Conic fine_conic(Disc disc, float sqrt_det) {
     if (FOOTPRINT == CONIC && PERSPECTIVE) {
         Gradient w = gradient_of(2, vec2(0.0), scale(size, frame.cutoff), disc, metric);
         vec2 q = add(vec2(1.0, 0.0), -along_disc(metric, w, w));
-        // −o / F, and o at last.
+        // −o / F first, then o.
         ox = divide(along_disc(metric, x, w), q);
         oy = divide(along_disc(metric, y, w), q);
         xx = add(divide(xx, q), multiply(ox, ox));
@@ -92,6 +91,6 @@ Conic fine_conic(Disc disc, float sqrt_det) {
     }
     Conic conic = conic_of_variance(vec2(ox.x, oy.x), xx.x, xy.x, yy.x, sqrt_det);
     conic.offset_lo = vec2(ox.y, oy.y);
-    conic.turn = turn_of(conic, xx, xy, yy);
+    conic.axis_residual = axis_residual_of(conic, xx, xy, yy);
     return conic;
 }

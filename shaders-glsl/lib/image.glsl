@@ -1,18 +1,18 @@
-// The image of a disc by the kind of footprint: an ellipse on the screen and a plane through the centre.
+// Projection of a disc by kind of footprint: an ellipse on the screen and a plane through the centre.
 
 #include "lib/conic.glsl"
 
 // A disc in front of the eye; all vectors world space.
 struct Disc {
-    vec3 hi, lo;      // centre relative to the eye
-    vec2 w, x, y;     // its homogeneous pixel; w is the distance along the viewing direction, 1 for parallel rays
+    vec3 hi, lo;  // centre relative to the eye
+    vec2 w, x, y; // its homogeneous pixel; w is the distance along the viewing direction, 1 for parallel rays
     vec3 normal;
-    vec2 h;           // of its plane n·x = h
-    vec2 facing;      // above 0 where the normal points away from the eye
-    float radius;     // longer semi-axis
-    float aspect;     // shorter semi-axis / longer
-    mat2x3 axes;      // directions of the semi-axes, the second of length `aspect`
-    vec3 major;       // of an ellipse, the first as it was given: of about unit length, and about at a right angle to the normal
+    vec2 h;       // of its plane n·x = h
+    vec2 facing;  // above 0 where the normal points away from the eye
+    float radius; // longer semi-axis
+    float aspect; // shorter semi-axis / longer
+    mat2x3 axes;  // directions of the semi-axes, the second of length `aspect`
+    vec3 major;   // of an ellipse: the stored first axis, unit and orthogonal to the normal up to rounding
 };
 
 #include "lib/fine_conic.glsl"
@@ -21,36 +21,36 @@ struct Disc {
 struct Image {
     Conic conic;
     float sqrt_det; // √|V|, px²
-    float lean;     // how much nearer than the centre the disc comes: w in perspective, else distance
-    vec2 slope;     // of the plane where it is not the tangent plane: distance (has_linear_depth) or κ, per px
+    float lean;     // depth of the centre less that of the disc's nearest point: w in perspective, else distance
+    vec2 slope;     // slope of the plane if it is not the tangent plane: of distance (has_linear_depth) or κ, per px
 };
 
-// Least cosine by which a sprite is foreshortened. Flatter ones would leave holes, because the angle between ray and axis is neglected.
+// Least cosine of a sprite's foreshortening. Flatter sprites leave holes: the angle between ray and axis is neglected.
 const float LEAST_FORESHORTENING = 0.1;
 
-// Homogeneous pixel of a vector of the world.
+// Homogeneous pixel of a world vector.
 vec3 to_pixel(vec3 v) {
     return vec3(dot(view.rows_hi[0].xyz, v), dot(view.rows_hi[1].xyz, v), dot(view.rows_hi[2].xyz, v));
 }
 
-// How clear of the eye plane the disc is: above 0 where all of it is in front. S, T: homogeneous pixels of the 1-σ axes.
+// Clearance of the disc from the eye plane: above 0 if all of the disc is in front. S, T: homogeneous pixels of the 1-σ axes.
 float clearance(Disc disc, vec3 S, vec3 T) {
     float g = length(vec2(S.z, T.z));
     return (disc.w.x / frame.cutoff - g) * (disc.w.x / frame.cutoff + g);
 }
 
-// A parallelogram's sides are the ellipse's axes; where its variances differ by no more than this part, they are those of the picture:
-// rounding alone would turn them otherwise.
+// Least relative difference of the variances for which a parallelogram's sides follow the ellipse's axes; below it, rounding would rotate
+// them, and they follow the screen's.
 const float LEAST_ANISOTROPY = 1e-4;
 
 void align_sides(inout Conic conic) {
     bool circle = conic.variance.x - conic.variance.y <= LEAST_ANISOTROPY * conic.variance.x;
     if (FOOTPRINT != PARALLELOGRAM || !circle) return;
     conic.axis = vec2(1.0, 0.0);
-    conic.turn = 0.0;
+    conic.axis_residual = 0.0;
 }
 
-// The disc as the projection maps its rim (zwicker2004 §4.4), or as it maps what is next to its centre (ren2002 §3).
+// Image of a disc: the projection of its rim (zwicker2004 §4.4), or the affine approximation at its centre (ren2002 §3).
 Image image_of_disc(Disc disc, float sigma, vec3 S, vec3 T) {
     vec2 g = vec2(S.z, T.z);
     // Rows of D are the x and y rows of the derivative of the projection, times w.
@@ -70,26 +70,26 @@ Image image_of_disc(Disc disc, float sigma, vec3 S, vec3 T) {
     return Image(conic, sqrt_det, lean, vec2(0.0));
 }
 
-// The part of a vector that is parallel to the image plane.
+// Component of a vector parallel to the image plane.
 vec3 flattened(vec3 v) {
     return v - dot(v, view.forward_hi.xyz) * view.forward_hi.xyz;
 }
 
-// px of a vector by parallel projection, at distance 1.
+// Parallel projection of a vector at distance 1, px.
 vec2 flat_pixel(vec3 v) {
     return vec2(dot(view.flat_rows[0].xyz, v), dot(view.flat_rows[1].xyz, v));
 }
 
-// px of a unit length along y at distance 1: η.
+// Projected size of a unit length along y at distance 1, px: η.
 float focal_length() {
     return length(view.flat_rows[1].xyz);
 }
 
-// A sprite: the disc by parallel projection at its centre's scale, no flatter than LEAST_FORESHORTENING (botsch2003 §3.1–3.3).
+// Image of a sprite: parallel projection of the disc at its centre's scale, with at least LEAST_FORESHORTENING (botsch2003 §3.1–3.3).
 Image image_of_sprite(Disc disc, float sigma) {
     float across = dot(disc.normal, view.forward_hi.xyz);
     vec3 along = flattened(disc.normal);
-    // Not as √(1 − cosine²): that cancels on a sprite that faces the image plane.
+    // √(1 − cosine²) would cancel for a sprite that faces the image plane.
     float sine = min(length(along), sqrt(1.0 - LEAST_FORESHORTENING * LEAST_FORESHORTENING));
     vec3 lean = dot(along, along) > 0.0 ? normalize(along) : vec3(0.0);
     float cosine = max(abs(across), LEAST_FORESHORTENING);
@@ -99,10 +99,10 @@ Image image_of_sprite(Disc disc, float sigma) {
         float width = 2.0 * disc.radius * focal_length() / disc.w.x;
         whole = max(floor(width + 0.5), 1.0) / width;
     }
-    // Per unit of `size` so far: squares of the scene's lengths may be no float, nor fourth powers of px.
+    // Per unit of `size`: squares of scene lengths and fourth powers of px may overflow or underflow.
     vec2 s = flat_pixel(disc.axes[0]);
     vec2 t = flat_pixel(disc.axes[1]);
-    // What the bound adds to the variance along the normal's image.
+    // Added variance along the projected normal, for the bound.
     vec2 extra = disc.aspect * sqrt(cosine * cosine - across * across) * flat_pixel(lean);
     // |V| is the sum of the squares of all 2×2 minors (Cauchy and Binet); the first is known in closed form.
     vec2 minors = vec2(s.x, t.x) * extra.y - vec2(s.y, t.y) * extra.x;
@@ -119,7 +119,7 @@ Image image_of_sprite(Disc disc, float sigma) {
     return Image(conic, sqrt_det, disc.radius * sine, slope);
 }
 
-// A square that faces the image plane (botsch2003 §3.1).
+// Image of a square that faces the image plane (botsch2003 §3.1).
 Image image_of_square(Disc disc, float sigma) {
     vec2 size = sigma / disc.w.x * vec2(length(view.flat_rows[0].xyz), focal_length());
     bool wide = size.x >= size.y;

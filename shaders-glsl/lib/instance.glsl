@@ -1,63 +1,63 @@
-// An instance of a scene. It is seen in the scene's own axes and unit, in which all is as in the world, κ and pixels too; directions and
-// distances that instances share are turned and scaled. A dispatch is of several instances, each a row of workgroups along z, and so is a
-// draw, whose vertices are those of one instance after the other: as Vulkan instances of few vertices each they would cost more.
+// Instances of a scene. Passes run in the axes and unit of the scene; κ and pixels are those of the world, and directions and distances
+// shared between instances are transformed. A dispatch covers several instances, one per workgroup along z. A draw covers several, whose
+// vertices follow each other: Vulkan instances of few vertices would be slower.
 
-#define OF_SCENE
+#define PER_INSTANCE
 #include "lib/frame.glsl"
 
-layout(constant_id = 37) const bool INSTANCED = false; // there are instances: each has its own numbers
+layout(constant_id = 37) const bool INSTANCED = false; // scenes are instanced: each instance has its own ids
 
 #ifndef FRAGMENT
-// The surfels, lines or triangles of a command, and where those of each instance begin in what frames make of them.
-layout(push_constant) uniform Window {
-    uint count;    // of surfels, lines or triangles
-    uint first;    // number of the first in the scene
-    uint capacity; // surfels that the scene has room for in the window
-    uint room;     // elements of each instance in a buffer with an element for each of them
-    uint clips;    // elements of each instance in the buffer of screen clips
-    uint instance; // number of the first instance, of those that the descriptor set names
-    uint first_clip; // number in the frame of the first clip on the screen that the descriptor set names
-    uint attribute_rows; // of a splat in the frame's list
-    uint present;  // instances of the frame, of those that the descriptor set names
-} window;
+// Push constants of a command over a chunk of surfels, lines or triangles, and its ranges in per-instance buffers.
+layout(push_constant) uniform Chunk {
+    uint count;           // elements: surfels, lines or triangles
+    uint first_id;        // id of the first element in the scene
+    uint capacity;        // surfels that the chunk has room for
+    uint instance_stride; // stride of an instance in buffers of one value per element
+    uint clip_stride;     // stride of an instance in the buffer of screen clips
+    uint first_instance;  // first instance, of those in the descriptor set
+    uint first_clip;      // index in the frame of the first screen clip in the descriptor set
+    uint attribute_rows;  // attribute rows per splat in the frame's list
+    uint instance_count;  // instances in this frame, of those in the descriptor set
+} chunk;
 
 #ifdef VERTEX
-// The surfel of a vertex: those of all instances follow each other.
-uint surfel_number() {
+// Surfel of a vertex.
+uint surfel_index() {
     uint i = gl_VertexIndex / VERTICES;
-    return INSTANCED ? i % window.count : i;
+    return INSTANCED ? i % chunk.count : i;
 }
 #endif
 
-// Number of the instance, of those that the descriptor set names.
-uint instance_number() {
+// Index of the instance in the descriptor set.
+uint instance_index() {
 #ifdef VERTEX
-    return INSTANCED ? window.instance + gl_VertexIndex / VERTICES / window.count : 0;
+    return INSTANCED ? chunk.first_instance + gl_VertexIndex / VERTICES / chunk.count : 0;
 #else
-    return INSTANCED ? window.instance + gl_WorkGroupID.z : 0;
+    return INSTANCED ? chunk.first_instance + gl_WorkGroupID.z : 0;
 #endif
 }
 
-// Words before the lists in a buffer with one for each instance: those hold how long each is.
+// Words of the header of a buffer of per-instance lists: the length of each list.
 const uint LIST_HEADER = 64;
 
-// Where the instance's list begins in such a buffer.
+// Start of the instance's list in such a buffer.
 uint list_start() {
-    return LIST_HEADER + instance_number() * window.room;
+    return LIST_HEADER + instance_index() * chunk.instance_stride;
 }
 
-// Number in the frame of the first point of the window.
-uint first_number() {
-    return window.first + (INSTANCED ? view.first : 0);
+// Id in the frame of the chunk's first point.
+uint first_id() {
+    return chunk.first_id + (INSTANCED ? view.first_id : 0);
 }
 
-// A direction of the scene's in the world.
-vec3 in_world(vec3 direction) {
+// Transforms a direction from scene to world space.
+vec3 to_world(vec3 direction) {
     if (!INSTANCED) return direction;
-    return view.turn[0].xyz * direction.x + view.turn[1].xyz * direction.y + view.turn[2].xyz * direction.z;
+    return view.rotation[0].xyz * direction.x + view.rotation[1].xyz * direction.y + view.rotation[2].xyz * direction.z;
 }
 
-// A distance from the eye, in front of the near plane, in the world's unit: no nearer than the near plane by rounding.
+// Converts a distance from the eye to the world's unit; rounding does not move it in front of the near plane.
 float world_distance(float distance) {
     return INSTANCED ? max(view.scale * distance, frame.near) : distance;
 }

@@ -1,18 +1,18 @@
-// A segment as points: one in every column of the picture that it reaches, or in every row where it is steeper (marroquim2008 §4.1, §4.2).
-// What is wide is several strands side by side: src/verify/reference/pull_push/project/strands.rs says why.
+// A segment as points: one per pixel column that it crosses, or per row if it is steep (marroquim2008 §4.1, §4.2). Wide segments are
+// divided into strands side by side: see src/verify/reference/pull_push/project/strands.rs.
 
-const float WIDEST = 4.0;  // half the width up to which a line is one strand, px
-const float SPREAD = 1.5; // by how much a ribbon's strands are wider than what they are a part of
-const float MOST = 64.0;   // strands of a line
-const float MARGIN = 16.0; // how far beyond the picture strands go on, px
+const float WIDEST = 4.0;        // greatest half width of a line that is one strand, px
+const float SPREAD = 1.5;        // factor that widens the strands of a ribbon
+const float MOST_STRANDS = 64.0; // most strands of a line
+const float MARGIN = 16.0;       // distance beyond the viewport at which strands are clipped, px
 const float PI = 3.14159265358979;
 
-// An end of a segment, or of a strand: where it runs, and the disc that it is of. A tube's is about its axis, and faces the eye.
+// An end of a segment or strand: the middle line, and the disc. A tube's disc is around its axis and faces the eye.
 struct End {
     Vertex vertex;
-    vec3 along;         // unit direction of the line
-    vec3 run_hi, run_lo; // of a strand
-    float run_distance;
+    vec3 along;            // unit direction of the line
+    vec3 line_hi, line_lo; // middle line of a strand, relative to the eye
+    float line_distance;
 };
 
 struct Segment {
@@ -23,23 +23,23 @@ struct Segment {
 
 struct Strand {
     End from, to;
-    vec2 start, extent; // of the run, px
-    vec4 discs;         // where the discs of both ends are, px
-    int steep;          // 1 if it is a point in every row, not in every column
-    bool on_tube;       // it runs on a tube's surface, not along the axis
+    vec2 start, extent; // of the middle line, px
+    vec4 disc_centres;  // centres of both ends' discs, px
+    int steep;          // 1 if it has a point per row, not per column
+    bool on_tube;       // the middle line lies on the tube's surface, not on its axis
 };
 
-// A strand's point in a pixel.
-struct Place {
-    ivec2 at;
+// Point of a strand in a pixel.
+struct StrandPoint {
+    ivec2 pixel;
     float nearest;
-    vec2 weights; // of the ends, in space
+    vec2 weights; // of the ends, in world space
 };
 
 End end_of(uint i) {
     End end;
     end.vertex = vertex_of(i);
-    end.along = vec3(alongs[3 * i], alongs[3 * i + 1], alongs[3 * i + 2]);
+    end.along = vec3(line_directions[3 * i], line_directions[3 * i + 1], line_directions[3 * i + 2]);
     return end;
 }
 
@@ -53,22 +53,22 @@ End between(End a, End b, float t) {
     end.vertex.colour = mix(a.vertex.colour, b.vertex.colour, t);
     end.vertex.coordinates = mix(a.vertex.coordinates, b.vertex.coordinates, t);
     end.along = mix(a.along, b.along, t);
-    end.run_hi = mix(a.run_hi, b.run_hi, t);
-    end.run_lo = mix(a.run_lo, b.run_lo, t);
-    end.run_distance = mix(a.run_distance, b.run_distance, t);
+    end.line_hi = mix(a.line_hi, b.line_hi, t);
+    end.line_lo = mix(a.line_lo, b.line_lo, t);
+    end.line_distance = mix(a.line_distance, b.line_distance, t);
     return end;
 }
 
-vec3 unit_or(vec3 v, vec3 otherwise) {
+vec3 normalize_or(vec3 v, vec3 fallback) {
     float size = dot(v, v);
-    return size > 0.0 ? v * inversesqrt(size) : otherwise;
+    return size > 0.0 ? v * inversesqrt(size) : fallback;
 }
 
 float half_width(Vertex v) {
     return focal_scale() * v.radius / (PERSPECTIVE ? v.distance : 1.0);
 }
 
-// The part of segment i beyond the near plane; false where there is none.
+// Loads the part of segment i beyond the near plane; false if there is none.
 bool segment_of(uint i, out Segment s) {
     uint first = elements[2 * i];
     s.tube = first >> 31 != 0;
@@ -79,63 +79,63 @@ bool segment_of(uint i, out Segment s) {
     if (!(min(s.from.vertex.radius, s.to.vertex.radius) >= 0.0) || !(max(a, b) >= 0.0)) return false;
     if (min(a, b) < 0.0) {
         End cut = between(s.from, s.to, a / (a - b));
-        cut.along = unit_or(cut.along, vec3(0.0));
+        cut.along = normalize_or(cut.along, vec3(0.0));
         cut.vertex.distance = view.near;
         if (a < 0.0) s.from = cut;
         else s.to = cut;
     }
     float widest = max(half_width(s.from.vertex), half_width(s.to.vertex));
-    if (!PAPER && widest > WIDEST) s.strands = int(min(ceil((s.tube ? 0.5 * PI : 1.0) * widest / WIDEST), MOST));
+    if (!PAPER && widest > WIDEST) s.strands = int(min(ceil((s.tube ? 0.5 * PI : 1.0) * widest / WIDEST), MOST_STRANDS));
     return true;
 }
 
-void offset_run(inout End end, vec3 offset) {
+void offset_line(inout End end, vec3 offset) {
     vec3 hi = end.vertex.hi, lo = end.vertex.lo;
     vec2 x = two_sum(hi.x, offset.x), y = two_sum(hi.y, offset.y), z = two_sum(hi.z, offset.z);
-    end.run_hi = vec3(x.x, y.x, z.x);
-    end.run_lo = lo + vec3(x.y, y.y, z.y);
-    end.run_distance = distance_of(end.run_hi, end.run_lo);
+    end.line_hi = vec3(x.x, y.x, z.x);
+    end.line_lo = lo + vec3(x.y, y.y, z.y);
+    end.line_distance = distance_of(end.line_hi, end.line_lo);
 }
 
-// On a tube, at an angle from where it is nearest to the eye.
-void stave(inout End end, vec3 line, float angle) {
+// Moves the middle line to a tube's surface, at an angle from its point nearest to the eye.
+void tube_strand(inout End end, vec3 line, float angle) {
     vec3 along = dot(end.along, line) < 0.0 ? -end.along : end.along;
     vec3 to_eye = PERSPECTIVE ? -normalize(end.vertex.hi) : -view.forward_hi.xyz;
-    vec3 side = unit_or(cross(along, to_eye), vec3(0.0));
-    offset_run(end, end.vertex.radius * (cos(angle) * cross(side, along) + sin(angle) * side));
+    vec3 side = normalize_or(cross(along, to_eye), vec3(0.0));
+    offset_line(end, end.vertex.radius * (cos(angle) * cross(side, along) + sin(angle) * side));
 }
 
-vec3 across_of(End end, vec3 line) {
+vec3 ribbon_side(End end, vec3 line) {
     vec3 along = dot(end.along, line) < 0.0 ? -end.along : end.along;
-    return unit_or(cross(end.vertex.direction, along), vec3(0.0));
+    return normalize_or(cross(end.vertex.direction, along), vec3(0.0));
 }
 
-// At an offset across a ribbon, in half widths.
-void lath(inout End from, inout End to, vec3 line, float offset, float part) {
-    vec3 a = across_of(from, line), b = across_of(to, line);
-    // Either side of a ribbon is its front.
+// Moves ends to a strand of a ribbon at an offset across it, in half widths; its half width is `part` of the ribbon's.
+void ribbon_strand(inout End from, inout End to, vec3 line, float offset, float part) {
+    vec3 a = ribbon_side(from, line), b = ribbon_side(to, line);
+    // Both sides of a ribbon are fronts.
     if (dot(a, b) < 0.0) b = -b;
-    offset_run(from, offset * from.vertex.radius * a);
-    offset_run(to, offset * to.vertex.radius * b);
-    // Where a ribbon is twisted, its normal is not the middle line's.
+    offset_line(from, offset * from.vertex.radius * a);
+    offset_line(to, offset * to.vertex.radius * b);
+    // The normal of a twisted ribbon changes across it.
     vec3 along = line + offset * (to.vertex.radius * b - from.vertex.radius * a);
-    from.vertex.direction = unit_or(cross(along, a), from.vertex.direction);
-    to.vertex.direction = unit_or(cross(along, b), to.vertex.direction);
-    from.vertex.hi = from.run_hi, from.vertex.lo = from.run_lo, from.vertex.distance = from.run_distance;
-    to.vertex.hi = to.run_hi, to.vertex.lo = to.run_lo, to.vertex.distance = to.run_distance;
+    from.vertex.direction = normalize_or(cross(along, a), from.vertex.direction);
+    to.vertex.direction = normalize_or(cross(along, b), to.vertex.direction);
+    from.vertex.hi = from.line_hi, from.vertex.lo = from.line_lo, from.vertex.distance = from.line_distance;
+    to.vertex.hi = to.line_hi, to.vertex.lo = to.line_lo, to.vertex.distance = to.line_distance;
     from.vertex.radius *= part;
     to.vertex.radius *= part;
 }
 
-// Leaves of a strand what is within MARGIN of the picture, as far as it can be seen: farther coordinates cost the others' digits.
-bool cut_to_picture(inout End from, inout End to) {
+// Clips a strand to the viewport, widened by MARGIN; false if nothing is left. Farther coordinates would lose digits.
+bool clip_to_viewport(inout End from, inout End to) {
     float first = 0.0, last = 1.0;
     for (int k = 0; k < 4; k++) {
         float side = (k & 1) == 0 ? -MARGIN : frame.viewport[k >> 1] + MARGIN;
-        float inside = (k & 1) == 0 ? 1.0 : -1.0;
-        float x0 = pixel_row(k >> 1, from.run_hi, from.run_lo).x, x1 = pixel_row(k >> 1, to.run_hi, to.run_lo).x;
-        float w0 = PERSPECTIVE ? from.run_distance : 1.0, w1 = PERSPECTIVE ? to.run_distance : 1.0;
-        float f0 = inside * (x0 - side * w0), f1 = inside * (x1 - side * w1);
+        float sign = (k & 1) == 0 ? 1.0 : -1.0;
+        float x0 = pixel_row(k >> 1, from.line_hi, from.line_lo).x, x1 = pixel_row(k >> 1, to.line_hi, to.line_lo).x;
+        float w0 = PERSPECTIVE ? from.line_distance : 1.0, w1 = PERSPECTIVE ? to.line_distance : 1.0;
+        float f0 = sign * (x0 - side * w0), f1 = sign * (x1 - side * w1);
         if (max(f0, f1) < 0.0) return false;
         if (f0 < 0.0) first = max(first, f0 / (f0 - f1));
         if (f1 < 0.0) last = min(last, f0 / (f0 - f1));
@@ -147,7 +147,7 @@ bool cut_to_picture(inout End from, inout End to) {
     return true;
 }
 
-// Strand k of a segment; false where it is not seen.
+// Strand k of a segment; false if it is not visible.
 bool strand_of(Segment s, int k, out Strand strand) {
     strand.from = s.from;
     strand.to = s.to;
@@ -156,62 +156,62 @@ bool strand_of(Segment s, int k, out Strand strand) {
     float count = float(s.strands);
     if (strand.on_tube) {
         float angle = PI * ((float(k) + 0.5) / count - 0.5);
-        stave(strand.from, line, angle);
-        stave(strand.to, line, angle);
+        tube_strand(strand.from, line, angle);
+        tube_strand(strand.to, line, angle);
     } else if (s.strands > 1) {
         float part = SPREAD / count;
-        lath(strand.from, strand.to, line, (1.0 - part) * (2.0 * float(k) / (count - 1.0) - 1.0), part);
+        ribbon_strand(strand.from, strand.to, line, (1.0 - part) * (2.0 * float(k) / (count - 1.0) - 1.0), part);
     } else {
-        offset_run(strand.from, vec3(0.0));
-        offset_run(strand.to, vec3(0.0));
-        strand.from.run_distance = s.from.vertex.distance;
-        strand.to.run_distance = s.to.vertex.distance;
+        offset_line(strand.from, vec3(0.0));
+        offset_line(strand.to, vec3(0.0));
+        strand.from.line_distance = s.from.vertex.distance;
+        strand.to.line_distance = s.to.vertex.distance;
     }
-    if (min(strand.from.run_distance, strand.to.run_distance) < view.near) return false;
-    if (!cut_to_picture(strand.from, strand.to)) return false;
-    strand.start = screen_of(strand.from.run_hi, strand.from.run_lo);
-    strand.extent = screen_of(strand.to.run_hi, strand.to.run_lo) - strand.start;
+    if (min(strand.from.line_distance, strand.to.line_distance) < view.near) return false;
+    if (!clip_to_viewport(strand.from, strand.to)) return false;
+    strand.start = screen_of(strand.from.line_hi, strand.from.line_lo);
+    strand.extent = screen_of(strand.to.line_hi, strand.to.line_lo) - strand.start;
     strand.steep = abs(strand.extent.y) > abs(strand.extent.x) ? 1 : 0;
-    strand.discs.xy = screen_of(strand.from.vertex.hi, strand.from.vertex.lo);
-    strand.discs.zw = screen_of(strand.to.vertex.hi, strand.to.vertex.lo);
+    strand.disc_centres.xy = screen_of(strand.from.vertex.hi, strand.from.vertex.lo);
+    strand.disc_centres.zw = screen_of(strand.to.vertex.hi, strand.to.vertex.lo);
     return true;
 }
 
-// First and last column, or row, that a strand reaches.
+// First and last column, or row, that a strand crosses.
 ivec2 columns_of(Strand s) {
     float a = s.start[s.steep], b = a + s.extent[s.steep];
     return ivec2(max(floor(min(a, b)), 0.0), min(floor(max(a, b)), frame.viewport[s.steep] - 1.0));
 }
 
-// The point of a strand in a column, or a row; false where it is not seen.
-bool place_of(Segment segment, Strand s, int column, out Place place) {
+// The point of a strand in a column, or a row; false if it is not visible.
+bool strand_point(Segment segment, Strand s, int column, out StrandPoint point) {
     float extent = s.extent[s.steep];
     float t = extent != 0.0 ? clamp((float(column) + 0.5 - s.start[s.steep]) / extent, 0.0, 1.0) : 0.0;
     int across = 1 - s.steep;
-    place.at[s.steep] = column;
-    place.at[across] = int(floor(clamp(s.start[across] + t * s.extent[across], -1.0, frame.viewport[across])));
-    place.weights = vec2(1.0 - t, t);
-    if (PERSPECTIVE) place.weights /= vec2(s.from.run_distance, s.to.run_distance);
-    place.weights /= place.weights.x + place.weights.y;
-    float distance = dot(place.weights, vec2(s.from.run_distance, s.to.run_distance));
-    float radius = dot(place.weights, vec2(s.from.vertex.radius, s.to.vertex.radius));
-    // An axis is behind what is seen of its tube.
+    point.pixel[s.steep] = column;
+    point.pixel[across] = int(floor(clamp(s.start[across] + t * s.extent[across], -1.0, frame.viewport[across])));
+    point.weights = vec2(1.0 - t, t);
+    if (PERSPECTIVE) point.weights /= vec2(s.from.line_distance, s.to.line_distance);
+    point.weights /= point.weights.x + point.weights.y;
+    float distance = dot(point.weights, vec2(s.from.line_distance, s.to.line_distance));
+    float radius = dot(point.weights, vec2(s.from.vertex.radius, s.to.vertex.radius));
+    // The surface of a tube is in front of its axis.
     bool is_axis = segment.tube && !s.on_tube && !PAPER;
-    place.nearest = is_axis ? max(distance - radius, view.near) : distance;
-    return place.at[across] >= 0 && place.at[across] < int(frame.viewport[across]) && !is_beyond_far(distance);
+    point.nearest = is_axis ? max(distance - radius, view.near) : distance;
+    return point.pixel[across] >= 0 && point.pixel[across] < int(frame.viewport[across]) && !is_beyond_far(distance);
 }
 
-Sample sample_at(Segment segment, Strand s, Place place) {
+Sample sample_at(Segment segment, Strand s, StrandPoint point) {
     Vertex a = s.from.vertex, b = s.to.vertex;
-    vec2 weights = place.weights;
+    vec2 weights = point.weights;
     float distance = dot(weights, vec2(a.distance, b.distance));
     vec3 direction = weights.x * a.direction + weights.y * b.direction;
-    // A ribbon shows the side that is seen; a tube's tangent has no sign.
+    // A ribbon is two-sided; the tangent of a tube has no sign.
     if (!segment.tube && facing_of(weights.x * a.hi + weights.y * b.hi, direction) > 0.0) direction = -direction;
     float radius = dot(weights, vec2(a.radius, b.radius));
     vec2 on_screen = PERSPECTIVE ? weights * vec2(a.distance, b.distance) / distance : weights;
-    vec2 screen = on_screen.x * s.discs.xy + on_screen.y * s.discs.zw;
-    Sample disc = disc_sample(vec2(place.at) + 0.5, screen, place.nearest, distance, radius, direction, segment.tube);
+    vec2 screen = on_screen.x * s.disc_centres.xy + on_screen.y * s.disc_centres.zw;
+    Sample disc = disc_sample(vec2(point.pixel) + 0.5, screen, point.nearest, distance, radius, direction, segment.tube);
     disc.colour = weights.x * a.colour + weights.y * b.colour;
     disc.coordinates = weights.x * a.coordinates + weights.y * b.coordinates;
     return disc;

@@ -1,10 +1,10 @@
-// A pixel of the picture from what visibility and attribute left there (zwicker2004 §6, third pass; equation 2's normalization).
+// Output of a pixel from visibility and sums (zwicker2004 §6, third pass; equation 2's normalization).
 
 #include "lib/sums.glsl"
 #include "lib/shading.glsl"
 #include "lib/background.glsl"
 
-layout(constant_id = 20) const bool SHADE_SPLATS = false; // colours are light already
+layout(constant_id = 20) const bool SHADE_SPLATS = false; // colours are lit already
 
 struct Pixel {
     vec4 image;
@@ -12,16 +12,16 @@ struct Pixel {
     float depth;
 };
 
-// The pixel at `centre` (px), of which `alpha` is covered, from what visibility and attribute left there.
+// Normalizes and shades the pixel at `centre` (px), of which `alpha` is covered.
 Pixel normalize_pixel(vec2 centre, bool visible, float alpha, vec4 s0, vec4 s1) {
-    // Only what visibility wrote is there: the attribute footprint is wider and would bloat the outline.
+    // Only where visibility wrote: the attribute footprint is wider and would widen the outline.
     if (!visible || alpha == 0.0 || SUM_WEIGHTS && !(s0.x > 0.0)) return Pixel(frame.background, vec3(0.0), 0.0);
 
     float total = NORMALIZATION == PER_PIXEL ? s0.x : 1.0;
     vec3 ray = centre.x * view.ray_hi[0].xyz + centre.y * view.ray_hi[1].xyz + view.ray_hi[2].xyz;
     vec3 to_eye = PERSPECTIVE ? -normalize(ray) : -view.forward_hi.xyz;
     vec3 normal = vec3(0.0);
-    // Opposite normals that cancel leave no direction.
+    // Opposite normals cancel.
     if (SUM_NORMALS) normal = length(s0.yzw) < 1e-6 * s0.x ? to_eye : normalize(s0.yzw);
     vec3 colour = frame.albedo.rgb;
     if (SUM_COLOURS) colour = (SUM_NORMALS ? s1.yzw : s0.yzw) / total;
@@ -42,7 +42,7 @@ Pixel normalize_pixel(vec2 centre, bool visible, float alpha, vec4 s0, vec4 s1) 
 
 #ifdef COMPUTE
 
-layout(set = 1, binding = 3, std430) writeonly buffer Picture { float picture[]; }; // colour, then normals, then depths
+layout(set = 1, binding = 3, std430) writeonly buffer Picture { float picture[]; }; // colours, then normals, then depths
 layout(set = 1, binding = 3, std430) writeonly buffer PictureColours { vec4 picture_colours[]; };
 
 layout(constant_id = 9) const bool OUT_NORMAL = false;

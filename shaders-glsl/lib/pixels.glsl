@@ -1,4 +1,4 @@
-// Per-pixel buffers of the compute rasterizer, rows from the top left. What a pass does not define an access of, it reads.
+// Per-pixel buffers of the compute path, row by row from the top left; read-only unless the including pass defines another access.
 
 #ifndef VISIBILITY_ACCESS
 #define VISIBILITY_ACCESS readonly

@@ -1,4 +1,4 @@
-// A surfel as a point of one pixel.
+// Surfels as points of one pixel.
 
 #include "lib/cull_reasons.glsl"
 #include "lib/double_float.glsl"
@@ -7,29 +7,29 @@
 layout(constant_id = 1) const bool CULL_BACK = false;
 
 struct Point {
-    ivec2 at;       // the pixel that holds it
-    vec2 offset;    // from that pixel's centre, px
+    ivec2 pixel;  // the pixel that contains it
+    vec2 offset;  // from that pixel's centre, px
     float distance;
-    float facing;   // above 0 where it is seen from behind
+    float facing; // above 0 if seen from behind
 };
 
-// The whole part of x / w, two values of twice the precision, and what is left of it; for positions on the picture. The quotient of floats
-// may be rounded beyond a border: what is left tells.
-float whole_part(vec2 x, vec2 w, out float rest) {
-    float whole = floor(x.x / w.x);
-    vec2 left = add(x, scale(w, -whole));
-    if (left.x < 0.0) {
-        whole -= 1.0;
-        left = add(left, w);
-    } else if (add(left, -w).x >= 0.0) {
-        whole += 1.0;
-        left = add(left, -w);
+// Integer part of x / w, two values of twice the precision, and the remainder, for positions in the viewport. The rounded quotient may
+// cross a pixel border: the remainder corrects it.
+float integer_part(vec2 x, vec2 w, out float fraction) {
+    float integer = floor(x.x / w.x);
+    vec2 remainder = add(x, scale(w, -integer));
+    if (remainder.x < 0.0) {
+        integer -= 1.0;
+        remainder = add(remainder, w);
+    } else if (add(remainder, -w).x >= 0.0) {
+        integer += 1.0;
+        remainder = add(remainder, -w);
     }
-    rest = left.x / w.x;
-    return whole;
+    fraction = remainder.x / w.x;
+    return integer;
 }
 
-// Where surfel i is, and what becomes of it.
+// Projects surfel i to a point; returns its cull reason.
 uint point_of(uint i, out Point point) {
     point = Point(ivec2(-1), vec2(0.0), 0.0, 0.0);
     if (!is_valid(i)) return INVALID;
@@ -37,7 +37,7 @@ uint point_of(uint i, out Point point) {
     vec2 dx = two_sum(p.x, -view.eye_hi.x), dy = two_sum(p.y, -view.eye_hi.y), dz = two_sum(p.z, -view.eye_hi.z);
     vec3 hi = vec3(dx.x, dy.x, dz.x), lo = vec3(dx.y, dy.y, dz.y) - view.eye_lo.xyz;
     float z = dot_double(hi, lo, view.forward_hi.xyz, view.forward_lo.xyz).x;
-    // Tests are such that a coordinate which is no number fails them.
+    // Written so that NaN fails the test.
     if (!(z >= view.near && z > 0.0)) return BEHIND;
     if ((PERSPECTIVE ? view.near / z : 1.0 - (z - view.near) * view.key_slope) < frame.key_far) return BEHIND;
     point.distance = z;
@@ -46,11 +46,11 @@ uint point_of(uint i, out Point point) {
     if (point.facing == 0.0) return OUTSIDE;
 
     vec2 w = PERSPECTIVE ? pixel_row(2, hi, lo) : vec2(1.0, 0.0);
-    vec2 rest, corner;
-    corner.x = whole_part(pixel_row(0, hi, lo), w, rest.x);
-    corner.y = whole_part(pixel_row(1, hi, lo), w, rest.y);
+    vec2 fraction, corner;
+    corner.x = integer_part(pixel_row(0, hi, lo), w, fraction.x);
+    corner.y = integer_part(pixel_row(1, hi, lo), w, fraction.y);
     if (!(all(greaterThanEqual(corner, vec2(0.0))) && all(lessThan(corner, frame.viewport)))) return OUTSIDE;
-    point.at = ivec2(corner);
-    point.offset = rest - 0.5;
+    point.pixel = ivec2(corner);
+    point.offset = fraction - 0.5;
     return DRAWN;
 }

@@ -1,22 +1,22 @@
-// The vertices of ribbons, tubes and triangles.
+// Vertices of ribbons, tubes and triangles.
 
 #include "lib/double_float.glsl"
 #include "lib/pixel_row.glsl"
 #include "lib/colour_streams.glsl"
 
-layout(constant_id = 29) const uint VERTEX_COLOURS = 0; // how the scene holds their colours; see lib/colour_streams.glsl
+layout(constant_id = 29) const uint VERTEX_COLOURS = 0; // colour format: see lib/colour_streams.glsl
 
 layout(set = 0, binding = 12, std430) readonly buffer Vertices { float vertices[]; };            // position, direction, radius
-layout(set = 0, binding = 13, std430) readonly buffer Alongs { float alongs[]; };                // directions of the lines
+layout(set = 0, binding = 13, std430) readonly buffer LineDirections { float line_directions[]; };                // directions of the lines
 layout(set = 0, binding = 14, std430) readonly buffer VertexColours { uint vertex_colours[]; };
 layout(set = 0, binding = 15, std430) readonly buffer Elements { uint elements[]; };             // vertices of lines, or of triangles
 
 struct Vertex {
-    vec3 hi, lo;     // position relative to the eye, the sum of both
-    vec3 direction;  // unit: normal, or tangent of a tube
-    float radius;    // below 0 where it is invalid
+    vec3 hi, lo;      // position relative to the eye, as the sum of both
+    vec3 direction;   // unit: normal, or tangent of a tube
+    float radius;     // below 0 if invalid
     float distance;
-    vec3 colour;     // linear
+    vec3 colour;      // linear
     vec2 coordinates; // in the texture
 };
 
@@ -44,7 +44,7 @@ Vertex vertex_of(uint i) {
     return v;
 }
 
-// Position on the screen, px, of what is at this distance.
+// Position on the screen, px.
 vec2 screen_of(vec3 hi, vec3 lo) {
     vec2 x = pixel_row(0, hi, lo), y = pixel_row(1, hi, lo);
     return vec2(x.x, y.x) / (PERSPECTIVE ? pixel_row(2, hi, lo).x : 1.0);
@@ -54,20 +54,20 @@ bool is_beyond_far(float distance) {
     return (PERSPECTIVE ? view.near / distance : 1.0 - (distance - view.near) * view.key_slope) < frame.key_far;
 }
 
-// Below 0 if a plane with this normal at a position relative to the eye faces it.
+// Below 0 if a plane with this normal, at a position relative to the eye, faces it.
 float facing_of(vec3 position, vec3 normal) {
     return dot(PERSPECTIVE ? position : view.forward_hi.xyz, normal);
 }
 
-// The sample of the pixel with the centre `own` that a disc about `screen` is. What is nearest of it is at `nearest`. Colour and coordinates
-// are left out.
-Sample disc_sample(vec2 own, vec2 screen, float nearest, float distance, float radius, vec3 direction, bool tube) {
-    Sample s = NOTHING;
+// Sample of the pixel with this `centre` from a disc around `screen` whose nearest point is at distance `nearest`; without colour and
+// coordinates.
+Sample disc_sample(vec2 centre, vec2 screen, float nearest, float distance, float radius, vec3 direction, bool tube) {
+    Sample s = NO_SAMPLE;
     s.near = nearest;
     s.far = distance + (PAPER || tube ? 1.0 : 2.0) * radius;
     s.depth = distance;
     s.radius = focal_scale() * radius / (PERSPECTIVE ? distance : 1.0);
-    s.displacement = PAPER ? vec2(0.0) : screen - own;
+    s.displacement = PAPER ? vec2(0.0) : screen - centre;
     s.normal = dot(direction, direction) > 0.0 ? normalize(direction) : vec3(0.0);
     s.tube = tube;
     return s;

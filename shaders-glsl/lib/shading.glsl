@@ -1,11 +1,11 @@
-// Blinn–Phong in linear light: a headlight at the eye and directional lights. All vectors are unit, world space.
+// Blinn–Phong in linear light: a headlight at the eye and directional lights. All vectors are unit vectors in world space.
 
 #ifndef LIB_SHADING
 #define LIB_SHADING
 
 layout(constant_id = 7) const uint LIGHTS = 0;
 
-// How a surface shines beside its colour: Blinn–Phong's specular factor and exponent.
+// Specular factor and exponent of Blinn–Phong.
 struct Shine {
     vec3 specular;
     float shininess;
@@ -30,13 +30,13 @@ vec3 lit(Shine shine, vec3 albedo, vec3 normal, vec3 to_eye) {
     return sum;
 }
 
-// Of all normals across a line, the one that is turned to a unit vector.
+// Of the normals of a line, the one nearest to a unit vector.
 vec3 line_normal(vec3 tangent, vec3 towards) {
     vec3 normal = towards - dot(towards, tangent) * tangent;
     return dot(normal, normal) > 0.0 ? normalize(normal) : towards;
 }
 
-// A line has every normal across it: towards each light, the one that is brightest (marroquim2008 §4.2; its highlights likewise).
+// Lights a line by its brightest normal for each light (marroquim2008 §4.2; highlights likewise).
 vec3 lit_line(Shine shine, vec3 albedo, vec3 tangent, vec3 to_eye) {
     float facing = dot(line_normal(tangent, to_eye), to_eye);
     vec3 sum = frame.ambient * albedo + blinn_phong(shine, albedo, facing, facing, frame.albedo.a);

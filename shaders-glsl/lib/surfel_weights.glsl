@@ -1,20 +1,20 @@
-// Normalization weights of surfels, as the scene holds them.
+// Normalization weights of surfels.
 
 #include "lib/weights.glsl"
 
-layout(set = 0, binding = 11, std430) readonly buffer Weights { uint weights[]; }; // floats; of corners, where they are
+layout(set = 0, binding = 11, std430) readonly buffer Weights { uint weights[]; }; // floats, or AT_CORNERS and an index
 
-// Set in what is not a float but the index at which four weights, the square's first axis and the disc's aspect follow each other.
+// Flag of a word that is an index, not a float: there four weights, the square's first axis and the disc's aspect follow each other.
 const uint AT_CORNERS = 0x80000000u;
 
-// Whether rows of the frame's map to pixels keep the handedness of the world, seen along the view: 1 or −1.
+// 1 if the projection to pixels keeps the handedness of the world, seen along the view, else −1.
 float handedness() {
     return sign(dot(cross(view.rows_hi[0].xyz, view.rows_hi[1].xyz), view.forward_hi.xyz));
 }
 
-// The rotation from a kernel's axes on the screen to those of the surfel's square. Both kernels are circles in their own units, so that it is
-// one even where the filter has widened the splat, or where that is seen edge-on: only the image of the longer axis is looked at.
-// All vectors are the world's; `to_eye` runs from the surfel's centre.
+// Rotation from a kernel's axes on the screen to those of the surfel's square. Both kernels are circles in their own units, so it is a
+// rotation even if the filter widens the splat or the splat is edge-on: it follows from the projected major axis. All vectors are in world
+// space; `to_eye` starts at the surfel's centre.
 mat2 square_of(Splat splat, vec3 u, float aspect, vec3 normal, vec3 to_eye) {
     vec3 v = aspect * cross(normal, u);
     mat3 rows = transpose(mat3(view.rows_hi[0].xyz, view.rows_hi[1].xyz, view.rows_hi[2].xyz));
@@ -26,8 +26,8 @@ mat2 square_of(Splat splat, vec3 u, float aspect, vec3 normal, vec3 to_eye) {
     return mat2(first, side * vec2(-first.y, first.x));
 }
 
-// What scales surfel i's kernel everywhere beside its amplitude, and what scales it further at the corners of the surfel's square.
-float weight_of(uint i, Splat splat, out vec4 corners, out mat2 square) {
+// Normalization weight of surfel i, and its weights at the corners of the surfel's square.
+float surfel_weight(uint i, Splat splat, out vec4 corners, out mat2 square) {
     corners = vec4(1.0);
     square = mat2(1.0);
     if (OVERLAP) return 1.0;

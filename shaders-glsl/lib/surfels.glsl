@@ -1,5 +1,5 @@
-// The surfels of the bound window: where each has its values, in words of the bound ranges. What the engine uploads lies side by side, as
-// the constants' defaults say; in a host's buffers values lie as the host says, and nobody has looked at them (UNCHECKED).
+// Streams of the bound chunk's surfels, in words of the bound ranges. Uploaded streams are packed, as the default constants describe; the
+// buffers of a host have other layouts, and unvalidated values (UNCHECKED).
 
 #include "lib/colour_streams.glsl"
 
@@ -9,34 +9,34 @@ layout(constant_id = 50) const uint POSITION_OFFSET = 0;
 layout(constant_id = 51) const uint POSITION_STRIDE = 3;
 layout(constant_id = 52) const uint NORMAL_OFFSET = 0;
 layout(constant_id = 53) const uint NORMAL_STRIDE = 3;
-layout(constant_id = 54) const uint NORMALS = 0;         // their format
+layout(constant_id = 54) const uint NORMALS = 0;         // format of normals
 layout(constant_id = 55) const uint RADIUS_OFFSET = 0;
-layout(constant_id = 56) const uint RADIUS_STRIDE = 1;   // 0: all have one
+layout(constant_id = 56) const uint RADIUS_STRIDE = 1;   // 0: one radius for all
 layout(constant_id = 57) const uint COLOUR_OFFSET = 0;
 layout(constant_id = 58) const uint COLOUR_STRIDE = 1;
 layout(constant_id = 59) const uint ELLIPSE_OFFSET = 0;
 layout(constant_id = 60) const uint ELLIPSE_STRIDE = 4;
-layout(constant_id = 61) const bool UNCHECKED = false;   // some surfels may be invalid and not marked so
-layout(constant_id = 62) const uint HELD_COLOURS = 0;    // how the scene holds colours, whatever the frame needs of them
+layout(constant_id = 61) const bool UNCHECKED = false;   // surfels are not validated
+layout(constant_id = 62) const uint STORED_COLOURS = 0;    // colour format of the scene, also if the frame reads no colours
 
 layout(set = 0, binding = 2, std430) readonly buffer Positions { float positions[]; };
 layout(set = 0, binding = 3, std430) readonly buffer Normals { uint normals[]; };
-layout(set = 0, binding = 4, std430) readonly buffer Radii { float radii[]; }; // 0: invalid; TWO_SIDED: negative where it is
+layout(set = 0, binding = 4, std430) readonly buffer Radii { float radii[]; }; // 0: invalid; TWO_SIDED: negative for two-sided surfels
 layout(set = 0, binding = 5, std430) readonly buffer Colours { uint colours[]; };
 layout(set = 0, binding = 8, std430) readonly buffer Ellipses { vec4 ellipses[]; }; // major axis, aspect
 layout(set = 0, binding = 8, std430) readonly buffer EllipseWords { float ellipse_words[]; };
 
 const uint FLOAT_NORMALS = 0, SNORM8_NORMALS = 1, SNORM16_NORMALS = 2, HALF_NORMALS = 3;
 
-DEFINE_COLOURS(held_colour, HELD_COLOURS, colours, COLOUR_OFFSET, COLOUR_STRIDE)
+DEFINE_COLOURS(stored_colour, STORED_COLOURS, colours, COLOUR_OFFSET, COLOUR_STRIDE)
 
 vec3 position_of(uint i) {
     uint k = POSITION_OFFSET + POSITION_STRIDE * i;
     return vec3(positions[k], positions[k + 1], positions[k + 2]);
 }
 
-// As it is held.
-vec3 held_normal(uint i) {
+// As stored: packed formats are not unit vectors.
+vec3 stored_normal(uint i) {
     uint k = NORMAL_OFFSET + NORMAL_STRIDE * i;
     if (NORMALS == SNORM8_NORMALS) return unpackSnorm4x8(normals[k]).xyz;
     if (NORMALS == SNORM16_NORMALS) return vec3(unpackSnorm2x16(normals[k]), unpackSnorm2x16(normals[k + 1]).x);
@@ -44,25 +44,25 @@ vec3 held_normal(uint i) {
     return uintBitsToFloat(uvec3(normals[k], normals[k + 1], normals[k + 2]));
 }
 
-// Of unit length: few bits do not hold it.
+// Unit normal.
 vec3 normal_of(uint i) {
-    vec3 normal = held_normal(i);
+    vec3 normal = stored_normal(i);
     return NORMALS == FLOAT_NORMALS ? normal : normalize(normal);
 }
 
-float held_radius(uint i) {
+float stored_radius(uint i) {
     return radii[RADIUS_OFFSET + RADIUS_STRIDE * i];
 }
 
 float radius_of(uint i) {
-    return TWO_SIDED ? abs(held_radius(i)) : held_radius(i);
+    return TWO_SIDED ? abs(stored_radius(i)) : stored_radius(i);
 }
 
 bool is_two_sided(uint i) {
-    return TWO_SIDED && held_radius(i) < 0.0;
+    return TWO_SIDED && stored_radius(i) < 0.0;
 }
 
-// The major axis of surfel i's disc, and its aspect.
+// Major axis of surfel i's disc, and its aspect.
 vec4 ellipse_of(uint i) {
     if (ELLIPSE_STRIDE == 4 && ELLIPSE_OFFSET % 4 == 0) return ellipses[i + ELLIPSE_OFFSET / 4];
     uint k = ELLIPSE_OFFSET + ELLIPSE_STRIDE * i;
@@ -70,10 +70,10 @@ vec4 ellipse_of(uint i) {
 }
 
 const float LARGEST_VALUE = 1e15;
-const float UNIT = 1e-3;        // how far from 1 the squared length of a unit vector may be
-const float PACKED_UNIT = 0.03; // of one whose coordinates were cut to 8 bits
+const float UNIT_TOLERANCE = 1e-3;        // tolerance of the squared length of a unit vector
+const float PACKED_UNIT_TOLERANCE = 0.03; // of a vector rounded to 8 bits per coordinate
 
-// By the bits: what is no number has greater ones, and no compiler takes it for granted that there are none.
+// Compares bits: NaN has greater ones, and compilers may assume that floats are not NaN.
 bool is_bounded(vec3 v) {
     return all(lessThanEqual(floatBitsToUint(v) & 0x7fffffffu, uvec3(floatBitsToUint(LARGEST_VALUE))));
 }
@@ -82,15 +82,15 @@ bool is_unit(vec3 v, float tolerance) {
     return is_bounded(v) && abs(dot(v, v) - 1.0) <= tolerance;
 }
 
-// Whether surfel i can be drawn: Surfels::is_valid, of what a host's buffer can hold.
+// Whether surfel i can be drawn: Surfels::is_valid for the buffers of a host.
 bool is_valid(uint i) {
     float radius = radius_of(i);
     if (!UNCHECKED) return radius > 0.0;
     if (!is_bounded(vec3(radius)) || !(radius > 0.0) || !is_bounded(position_of(i))) return false;
-    if (!is_unit(held_normal(i), NORMALS == FLOAT_NORMALS ? UNIT : PACKED_UNIT)) return false;
-    if (HELD_COLOURS != COLOURS_NONE && !is_bounded(held_colour(i))) return false;
+    if (!is_unit(stored_normal(i), NORMALS == FLOAT_NORMALS ? UNIT_TOLERANCE : PACKED_UNIT_TOLERANCE)) return false;
+    if (STORED_COLOURS != COLOURS_NONE && !is_bounded(stored_colour(i))) return false;
     if (!ELLIPSES) return true;
     vec4 shape = ellipse_of(i);
-    bool right = is_unit(shape.xyz, UNIT) && is_unit(cross(normal_of(i), shape.xyz), UNIT);
-    return right && is_bounded(vec3(shape.w)) && shape.w > 0.0 && shape.w <= 1.0;
+    bool orthogonal = is_unit(shape.xyz, UNIT_TOLERANCE) && is_unit(cross(normal_of(i), shape.xyz), UNIT_TOLERANCE);
+    return orthogonal && is_bounded(vec3(shape.w)) && shape.w > 0.0 && shape.w <= 1.0;
 }

@@ -1,15 +1,15 @@
-// A tile: TILE × TILE px that a team rasterizes splats to. Each lane has a column's pixels, ROW_STEP apart, in registers.
+// Tiles: TILE × TILE px that a workgroup rasterizes splats to. Each lane owns pixels of one column, ROW_STEP apart, in registers.
 
 #define BOX_ACCESS readonly
 #include "lib/box.glsl"
-#include "lib/team.glsl"
+#include "lib/workgroup.glsl"
 
-// Where the levels of the hierarchy of boxes begin: level 0 is of splats, a node of level 3 is a block of 512.
+// Start of each level of the box hierarchy: level 0 has the boxes of splats, a node of level 3 is a block of 512.
 layout(push_constant) uniform Hierarchy {
     uint starts[10];
-    uint attribute_rows; // of a splat
-    // The splats of the dispatch: those below a group of siblings. Where SLICED there are several dispatches, and each goes on where the one
-    // before ended; they are numbered from 0 on.
+    uint attribute_rows; // per splat
+    // The root of the dispatch: a group of siblings. If SLICED there are several dispatches, each of which resumes the state of the
+    // previous one; slices count from 0.
     uint level;
     uint group;
     uint slice;
@@ -18,12 +18,12 @@ layout(push_constant) uniform Hierarchy {
 
 layout(constant_id = 47) const bool SLICED = false;
 
-// Whether this dispatch goes on where another ended, and whether another goes on where this one ends.
-bool goes_on() {
+// Whether this dispatch resumes the state of the previous slice, and whether no further slice follows.
+bool is_resumed() {
     return SLICED && hierarchy.slice > 0;
 }
 
-bool is_last() {
+bool is_last_slice() {
     return !SLICED || hierarchy.slice + 1 == hierarchy.slices;
 }
 
@@ -31,23 +31,24 @@ const uint TILE = 8;
 const uint ROWS = TILE * TILE / LANES;
 const uint ROW_STEP = LANES / TILE;
 
-// The tile of this team: even rows of tiles first, then odd ones, so that devices that deal workgroups out in halves deal the picture evenly.
-uvec2 tile_low() {
+// First pixel of the workgroup's tile: even rows of tiles first, then odd ones, so that devices that split dispatches into halves balance
+// the load.
+uvec2 tile_origin() {
     uint half_way = (gl_NumWorkGroups.y + 1) / 2, y = gl_WorkGroupID.y;
     return TILE * uvec2(gl_WorkGroupID.x, y < half_way ? 2 * y : 2 * (y - half_way) + 1);
 }
 
-// The lane's first pixel, and its row-th one, relative to the tile.
+// The lane's pixel number `row`, relative to the tile.
 uvec2 lane_pixel(uint row) {
     return uvec2(lane % TILE, lane / TILE + ROW_STEP * row);
 }
 
-bool is_on_picture(uvec2 pixel) {
+bool is_in_viewport(uvec2 pixel) {
     return all(lessThan(pixel, uvec2(frame.viewport)));
 }
 
-// An affine function on the tile, which is evaluated without rounding but for what is left over, however large its terms are: its value at the
-// tile's first pixel and its derivatives along x and y, per px, on a grid so coarse that their sums are exact, and what that grid lacks.
+// An affine function on the tile, evaluated with compensated rounding: value at the tile's first pixel and derivatives along x and y, per
+// px, rounded to a grid so coarse that their sums are exact, and the remainders.
 struct Affine {
     vec3 grid;
     vec3 rest;
@@ -56,7 +57,7 @@ struct Affine {
 Affine on_tile(vec3 hi, vec3 lo) {
     vec3 size = abs(hi) * vec3(1.0, TILE, TILE);
     float most = min(max(size.x, max(size.y, size.z)), 1e30);
-    // Grid of 2⁻¹⁸ of the power of two below `most`: sums stay below 2²⁴ of it.
+    // Grid of 2⁻¹⁸ of the power of two below `most`: sums stay below 2²⁴ steps.
     float shift = 48.0 * uintBitsToFloat(floatBitsToUint(most) & 0x7f800000u);
     precise vec3 shifted = hi + shift;
     precise vec3 grid = shifted - shift;
@@ -69,11 +70,11 @@ float value_at(Affine f, vec2 d) {
     return grid + (f.rest.x + f.rest.y * d.x + f.rest.z * d.y);
 }
 
-Affine of_lane(Affine f, uint from) {
-    return Affine(of_lane(f.grid, from), of_lane(f.rest, from));
+Affine shuffle(Affine f, uint from) {
+    return Affine(shuffle(f.grid, from), shuffle(f.rest, from));
 }
 
-// The plane's value at d px from the anchor as the sum of two floats, and its derivatives: see plane_at.
+// A plane relative to the tile, with compensated rounding: see plane_at.
 Affine plane_on_tile(vec3 hi, vec3 lo, vec2 d) {
     vec2 x = two_product(hi.y, d.x), y = two_product(hi.z, d.y);
     vec2 slope = two_sum(x.x, y.x);
@@ -82,50 +83,50 @@ Affine plane_on_tile(vec3 hi, vec3 lo, vec2 d) {
     return on_tile(vec3(sum.x, hi.yz), vec3(sum.y, lo.yz));
 }
 
-// The place in a kernel on the tile: σ along the ellipse's axes. CONFETTI alone has need of what is left over.
-struct Place {
+// Affine map from the tile's pixels to kernel coordinates, σ along the ellipse's axes; remainders only with CONFETTI.
+struct KernelMap {
     vec3 u, v;
     vec3 u_rest, v_rest;
 };
 
-Place of_lane(Place p, uint from) {
-    Place own = Place(of_lane(p.u, from), of_lane(p.v, from), vec3(0.0), vec3(0.0));
+KernelMap shuffle(KernelMap p, uint from) {
+    KernelMap result = KernelMap(shuffle(p.u, from), shuffle(p.v, from), vec3(0.0), vec3(0.0));
     if (CONFETTI) {
-        own.u_rest = of_lane(p.u_rest, from);
-        own.v_rest = of_lane(p.v_rest, from);
+        result.u_rest = shuffle(p.u_rest, from);
+        result.v_rest = shuffle(p.v_rest, from);
     }
-    return own;
+    return result;
 }
 
-vec2 value_at(Place p, vec2 d) {
+vec2 value_at(KernelMap p, vec2 d) {
     if (CONFETTI) return vec2(value_at(Affine(p.u, p.u_rest), d), value_at(Affine(p.v, p.v_rest), d));
     return vec2(p.u.x + p.u.y * d.x + p.u.z * d.y, p.v.x + p.v.y * d.x + p.v.z * d.y);
 }
 
-// A splat of one variance on the tile.
+// A splat with one of its variances, relative to the tile.
 struct TileSplat {
-    Place place;
+    KernelMap kernel;
     Affine plane;
     float key_centre; // on_plane: κ of the plane at the centre
     vec3 lines[2];    // CLIPS: see ScreenClip
     float concave;
 };
 
-Place place_on_tile(Ellipse ellipse, vec2 d) {
+KernelMap kernel_map_on_tile(Ellipse ellipse, vec2 d) {
     if (CONFETTI) {
         Affine u = plane_on_tile(vec3(ellipse.fine[0].x, ellipse.whitening.xy), ellipse.fine[0].yzw, d);
         Affine v = plane_on_tile(vec3(ellipse.fine[1].x, ellipse.whitening.zw), ellipse.fine[1].yzw, d);
-        return Place(u.grid, v.grid, u.rest, v.rest);
+        return KernelMap(u.grid, v.grid, u.rest, v.rest);
     }
-    vec2 at = place(ellipse, d);
-    return Place(vec3(at.x, ellipse.whitening.xy), vec3(at.y, ellipse.whitening.zw), vec3(0.0), vec3(0.0));
+    vec2 at_origin = kernel_coordinates(ellipse, d);
+    return KernelMap(vec3(at_origin.x, ellipse.whitening.xy), vec3(at_origin.y, ellipse.whitening.zw), vec3(0.0), vec3(0.0));
 }
 
-// A splat's ellipse at the tile whose first pixel's centre is at `origin`, px.
+// Transforms an ellipse to the tile whose first pixel's centre is at `origin`, px.
 TileSplat splat_on_tile(Ellipse ellipse, vec2 origin) {
     vec2 d = origin - ellipse.anchor;
     TileSplat splat;
-    splat.place = place_on_tile(ellipse, d);
+    splat.kernel = kernel_map_on_tile(ellipse, d);
     splat.plane = plane_on_tile(ellipse.plane_hi, ellipse.plane_lo, d);
     splat.key_centre = ellipse.key_centre;
     splat.lines[0] = splat.lines[1] = vec3(1.0, 0.0, 0.0);
@@ -139,20 +140,20 @@ TileSplat splat_on_tile(Ellipse ellipse, vec2 origin) {
     return splat;
 }
 
-TileSplat of_lane(TileSplat s, uint from) {
-    TileSplat own = s;
-    own.place = of_lane(s.place, from);
-    own.plane = of_lane(s.plane, from);
-    if (on_plane()) own.key_centre = of_lane(s.key_centre, from);
+TileSplat shuffle(TileSplat s, uint from) {
+    TileSplat result = s;
+    result.kernel = shuffle(s.kernel, from);
+    result.plane = shuffle(s.plane, from);
+    if (on_plane()) result.key_centre = shuffle(s.key_centre, from);
     if (CLIPS) {
-        own.lines[0] = of_lane(s.lines[0], from);
-        own.lines[1] = of_lane(s.lines[1], from);
-        own.concave = of_lane(s.concave, from);
+        result.lines[0] = shuffle(s.lines[0], from);
+        result.lines[1] = shuffle(s.lines[1], from);
+        result.concave = shuffle(s.concave, from);
     }
-    return own;
+    return result;
 }
 
-// Signed distance, px, of what is d px from the tile's first pixel to what is clipped: see clip_distance.
+// Signed distance, px, of a point d px from the tile's first pixel to the clip: see clip_distance.
 float clip_distance(TileSplat splat, vec2 d) {
     float first = splat.lines[0].x + dot(splat.lines[0].yz, d), second = splat.lines[1].x + dot(splat.lines[1].yz, d);
     return splat.concave > 0.0 ? max(first, second) : min(first, second);
@@ -160,7 +161,7 @@ float clip_distance(TileSplat splat, vec2 d) {
 
 // Whether a splat has a fragment d px from the tile's first pixel: see splat_fragment.
 bool tile_fragment(TileSplat splat, vec2 d, out vec2 m, out float key, out float rank) {
-    m = value_at(splat.place, d);
+    m = value_at(splat.kernel, d);
     key = value_at(splat.plane, d);
     if (has_linear_depth()) key = key > 0.0 ? frame.near / key : 2.0;
     if (on_plane()) m /= clamp(key / splat.key_centre, 1.0 / MOST_STRETCH, MOST_STRETCH);
@@ -171,15 +172,15 @@ bool tile_fragment(TileSplat splat, vec2 d, out vec2 m, out float key, out float
     return inside && rank > 0.0 && key > frame.key_far && key <= 1.0;
 }
 
-// The values of the lanes in `wanted`, moved together to the lanes from 0 on: each moves down by as many as are not wanted below it, by powers of
-// two in turn.
-uint compacted(uint value, uint wanted) {
-    uint moves = bitCount(~wanted & ((1u << lane) - 1u));
-    moves = (wanted >> lane & 1u) != 0 ? moves : 0;
+// Stream compaction: moves the values of the lanes in `mask` to the lanes from 0 on. Each moves down by the number of unset lanes below it,
+// by powers of two.
+uint compact(uint value, uint mask) {
+    uint moves = bitCount(~mask & ((1u << lane) - 1u));
+    moves = (mask >> lane & 1u) != 0 ? moves : 0;
     for (uint k = 0; k < STEPS; k++) {
         uint step = 1u << k;
         uint from = min(lane + step, LANES - 1);
-        uint next_moves = of_lane(moves, from), next_value = of_lane(value, from);
+        uint next_moves = shuffle(moves, from), next_value = shuffle(value, from);
         bool comes = (next_moves & step) != 0 && lane + step < LANES;
         value = comes ? next_value : value;
         moves = comes ? next_moves : (moves & step) != 0 ? 0 : moves;
@@ -187,53 +188,53 @@ uint compacted(uint value, uint wanted) {
     return value;
 }
 
-// lavapipe ends all loops of an invocation after 65,535 steps together (LP_MAX_TGSI_LOOP_ITERATIONS), which would leave a hole: walks end before,
-// each after its part of them. Some 30,000 splats that are not hidden have their turn on a tile in a dispatch; frames in which there may be more
-// are SLICED.
+// lavapipe stops all loops of an invocation after 65,535 iterations in total (LP_MAX_TGSI_LOOP_ITERATIONS), which would leave holes: each
+// walk stops earlier, after its result share. A walk visits some 30,000 visible splats per tile and dispatch; frames that may have more are
+// SLICED.
 
-// Splats of a batch that are rasterized without a loop; a divisor of the least team's size.
-const uint AT_A_TIME = 2;
+// Splats of a batch that are rasterized by unrolled code; a divisor of the least LANES.
+const uint UNROLLED = 2;
 
-// The lane's depths, see lib/tile_visibility.glsl.
+// Depth keys of the lane's pixels, see lib/tile_visibility.glsl.
 float depths[ROWS];
 
-// Where the frame has the clip of a splat on the screen, or NO_CLIP.
+// Index of a splat's screen clip in the frame, or NO_CLIP.
 uint clip_of(uint id) {
     return CLIPS ? load_box(id).w : NO_CLIP;
 }
 
-// The splats that visibility met on the tile, in the order of its walk, as far as there is room for them; attributes take them from here.
-const uint MOST_MET = 512;
-shared uint met_list[MOST_MET + 64];
-uint met_count;
+// Ids of the splats that visibility visited on the tile, in order, up to MOST_VISITED; attribute rasterizes these.
+const uint MOST_VISITED = 512;
+shared uint visited_ids[MOST_VISITED + 64];
+uint visited_count;
 
-uint own_start;
+uint lane_level_start;
 
-// The level of blocks: nodes that are walked near to far, and above which there are at most so many levels, their own included.
+// Level of blocks, whose nodes are visited near to far, and the most levels from it upwards.
 const uint BLOCKS = 3, LEVELS = 7;
 
-// The lanes that are `wanted`, as bits from 0 on by their turn, near to far; `order` has the lane of each turn, 3 bits each.
-uint turns_of(bool wanted, float nearest, out uint order) {
-    float own = wanted ? nearest : -1.0;
-    uint turn = 0;
+// Sorts the hit siblings near to far: returns a mask of as many low bits; `order` has the lane of each, 3 bits each.
+uint sort_hits(bool hit, float nearest, out uint order) {
+    float own_nearest = hit ? nearest : -1.0;
+    uint rank = 0;
     for (uint k = 1; k < FAN_OUT; k++) {
         uint other = (lane + k) % FAN_OUT;
-        float its = of_lane(own, other);
-        turn += uint(its > own || its == own && other < lane);
+        float other_nearest = shuffle(own_nearest, other);
+        rank += uint(other_nearest > own_nearest || other_nearest == own_nearest && other < lane);
     }
-    order = wanted ? lane << 3 * turn : 0;
-    for (uint k = 0; k < 3; k++) order |= of_lane(order, lane ^ 1u << k);
-    // Lanes beyond the siblings go the same way.
-    if (LANES > FAN_OUT) order = of_lane(order, 0);
-    return (1u << bitCount(team_ballot(wanted))) - 1u;
+    order = hit ? lane << 3 * rank : 0;
+    for (uint k = 0; k < 3; k++) order |= shuffle(order, lane ^ 1u << k);
+    // Lanes beyond the siblings take the same order.
+    if (LANES > FAN_OUT) order = shuffle(order, 0);
+    return (1u << bitCount(workgroup_ballot(hit))) - 1u;
 }
 
-// Bits of a group of siblings on a level from blocks up.
+// Mask bits of a group of siblings on a level, counted from blocks.
 uvec2 group_bits(uint bits, uint level) {
     return level < 4 ? uvec2(bits << FAN_OUT * level, 0) : uvec2(0, bits << FAN_OUT * (level - 4));
 }
 
-// Where a level from 1 on begins: each lane has the start of one, as loads by number would be slow.
+// Start of a level from 1 on: each lane holds the start of one, as dynamic indexing is slow.
 uint level_start(uint level) {
-    return of_lane(own_start, level - 1);
+    return shuffle(lane_level_start, level - 1);
 }

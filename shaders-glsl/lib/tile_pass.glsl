@@ -1,5 +1,5 @@
-// What passes over tiles are compiled with. With SUBGROUPS they pass values on by shuffles and fetch splats as texels, which is faster on
-// lavapipe; otherwise by shared memory and from storage buffers, as every device can.
+// Extensions of tile passes. With SUBGROUPS, lanes exchange values by shuffles and splats are texel buffers, which is faster on lavapipe;
+// otherwise by shared memory and storage buffers, which every device supports.
 
 #ifdef COMPUTE
 #define TILE_PASS

@@ -1,50 +1,50 @@
-// Visibility on a tile: κ of the nearest surface at each of the lane's pixels, moved back by ε, or as it is (ALONE); 0 where there is none.
+// Visibility on a tile: κ of the nearest surface per pixel, moved back by ε, or exact with NEAREST_SPLAT; 0 in empty pixels.
 
-#ifdef ALONE
-uint winners[ROWS]; // the nearest splat
+#ifdef NEAREST_SPLAT
+uint nearest_splats[ROWS]; // id of the nearest splat
 #endif
 
-// The farthest depth of the team's pixels: what is behind it is hidden.
-float farthest;
+// Farthest κ of the tile's pixels: splats behind it are occluded.
+float visibility_cull_key;
 
-void update_farthest() {
+void update_visibility_cull_key() {
     float least = depths[0];
     for (uint r = 1; r < ROWS; r++) least = min(least, depths[r]);
-    farthest = team_min(least);
+    visibility_cull_key = workgroup_min(least);
 }
 
-// Takes the splat `number`, if it is there.
-void see(TileSplat splat, vec2 limit, uint number, bool is_splat) {
+// Updates the depths with splat `id`, if `is_splat`.
+void add_visibility(TileSplat splat, vec2 limit, uint id, bool is_splat) {
     for (uint r = 0; r < ROWS; r++) {
         vec2 m;
         float key, rank;
-        bool there = tile_fragment(splat, vec2(lane_pixel(r)), m, key, rank) && is_splat;
-#ifdef ALONE
+        bool has_fragment = tile_fragment(splat, vec2(lane_pixel(r)), m, key, rank) && is_splat;
+#ifdef NEAREST_SPLAT
         float depth = ranked(min(key, limit.x), rank);
-        bool nearer = there && (depth > depths[r] || depth == depths[r] && number < winners[r]);
+        bool nearer = has_fragment && (depth > depths[r] || depth == depths[r] && id < nearest_splats[r]);
         depths[r] = nearer ? depth : depths[r];
-        winners[r] = nearer ? number : winners[r];
+        nearest_splats[r] = nearer ? id : nearest_splats[r];
 #else
         float depth = ranked(visibility_key(key, limit.x, limit.y), rank);
-        depths[r] = there ? max(depths[r], depth) : depths[r];
+        depths[r] = has_fragment ? max(depths[r], depth) : depths[r];
 #endif
     }
 }
 
-void take_visibility(uint count, uint id, uvec2 low) {
+void add_visibility_batch(uint count, uint id, uvec2 origin) {
     Splat splat = splat_of(id);
     vec2 variance = visibility_variance(variance_of(splat));
-    TileSplat own = splat_on_tile(ellipse_of(splat, variance, clip_of(id)), vec2(low) + 0.5);
+    TileSplat lane_splat = splat_on_tile(ellipse_of(splat, variance, clip_of(id)), vec2(origin) + 0.5);
     vec2 limits = vec2(splat.key_disc, splat.epsilon);
     uint s = 0;
     do {
-        // Several at a time: loops are bounded on lavapipe, and a splat alone keeps it waiting.
-        for (uint k = 0; k < AT_A_TIME; k++) {
-            see(of_lane(own, s + k), of_lane(limits, s + k), of_lane(id, s + k), s + k < count);
+        // Unrolled: loop iterations are limited on lavapipe, and a single splat leaves it idle.
+        for (uint k = 0; k < UNROLLED; k++) {
+            add_visibility(shuffle(lane_splat, s + k), shuffle(limits, s + k), shuffle(id, s + k), s + k < count);
         }
-        s += AT_A_TIME;
+        s += UNROLLED;
     } while (s < count);
-    update_farthest();
+    update_visibility_cull_key();
 }
 
 #define WALK walk_visibility
@@ -52,21 +52,21 @@ void take_visibility(uint count, uint id, uvec2 low) {
 #define VISIBILITY_STEPS 24000
 #endif
 #define WALK_STEPS VISIBILITY_STEPS
-#define WALK_BEHIND farthest
-#define WALK_KEEP
-#define WALK_TAKE(count, id) take_visibility(count, id, low)
+#define WALK_CULL_KEY visibility_cull_key
+#define WALK_RECORD
+#define WALK_BATCH(count, id) add_visibility_batch(count, id, origin)
 #include "lib/walk.glsl"
 
-// From no surface, or from what an earlier dispatch has left in `depths`, and in `winners`.
-void find_visible(uvec2 low) {
-    // No pixel beside the picture waits for a surface.
+// Computes the depths of the tile, from empty ones or from the previous slice.
+void compute_visibility(uvec2 origin) {
+    // Pixels outside the viewport never hold back the cull key.
     for (uint r = 0; r < ROWS; r++) {
-        depths[r] = !is_on_picture(low + lane_pixel(r)) ? 1e30 : goes_on() ? depths[r] : 0.0;
-#ifdef ALONE
-        winners[r] = goes_on() ? winners[r] : 0;
+        depths[r] = !is_in_viewport(origin + lane_pixel(r)) ? 1e30 : is_resumed() ? depths[r] : 0.0;
+#ifdef NEAREST_SPLAT
+        nearest_splats[r] = is_resumed() ? nearest_splats[r] : 0;
 #endif
     }
-    update_farthest();
-    met_count = 0;
-    walk_visibility(low, low + TILE - 1);
+    update_visibility_cull_key();
+    visited_count = 0;
+    walk_visibility(origin, origin + TILE - 1);
 }

@@ -47,7 +47,7 @@ pub(crate) const PLANES: usize = 5;
 /// Where shaders see the planes: in set 2, and in the same places of set 3.
 const BINDINGS: [&shaders::Resource; PLANES] = [
     &resource::TO_DEPTHS,
-    &resource::TO_PLACES,
+    &resource::TO_DISPLACEMENTS,
     &resource::TO_NORMALS,
     &resource::TO_COLOURS,
     &resource::TO_IDS,

@@ -154,13 +154,13 @@ impl Prepared {
                     part.instances = part.room;
                 }
                 let [x, y, _] = match over {
-                    Over::Surfels | Over::Lines | Over::Triangles => row_over(part.window.count.into()),
-                    Over::Slots => row_over(part.window.room.into()),
+                    Over::Surfels | Over::Lines | Over::Triangles => row_over(part.chunk.count.into()),
+                    Over::Slots => row_over(part.chunk.instance_stride.into()),
                     Over::LargeTriangles => [LARGE_WORKGROUPS.div_ceil(part.instances), 1, 1],
                     _ => grid_over(frame.targets.pixels()),
                 };
                 let sets = three(part.set, pyramid.or(part.counts));
-                enc.dispatch(pipeline, &sets, &part.window, [x, y, part.instances]);
+                enc.dispatch(pipeline, &sets, &part.chunk, [x, y, part.instances]);
             }
         }
     }
@@ -176,8 +176,8 @@ impl Prepared {
                 continue;
             };
             for part in run.parts(over.scope(), self.pass) {
-                let vertices = if over == Over::Points { 1 } else { 3 } * part.window.count;
-                draws.draw(pipeline, &sets(part.set), &part.window, vertices * part.instances);
+                let vertices = if over == Over::Points { 1 } else { 3 } * part.chunk.count;
+                draws.draw(pipeline, &sets(part.set), &part.chunk, vertices * part.instances);
             }
         }
     }

@@ -9,7 +9,7 @@ use super::uniforms::{self, VIEW};
 use super::variant::SceneVariant;
 use crate::error::Result;
 use crate::scene::{Elements, Scene};
-use crate::vk::shaders::layout::{Counts, Splat, Window};
+use crate::vk::shaders::layout::{Chunk, Counts, Splat};
 use crate::vk::shaders::{self, resource};
 use crate::vk::{Binding, Buffer, Commands, DescriptorSet, Device, Encoder, Recorder};
 use std::ops::Range;
@@ -88,7 +88,7 @@ pub struct Part<'a> {
     /// Of its counts, if they are there.
     pub counts: Option<&'a DescriptorSet>,
     /// The push constants of `lib/instance.glsl`.
-    pub window: Window,
+    pub chunk: Chunk,
     pub instances: u32,
     /// Instances that there is room for in the batch.
     pub room: u32,
@@ -399,23 +399,23 @@ impl<'a> Run<'a> {
         sets.iter().zip(&scene.parts).enumerate().map(move |(number, (set, part))| {
             let own = part.end - part.start;
             let room = scene.share.as_ref().map_or(own, |_| slots(own));
-            let window = Window {
+            let chunk = Chunk {
                 count: scene.count.saturating_sub(part.start).min(own) as u32,
-                first: part.start as u32,
+                first_id: part.start as u32,
                 capacity: own as u32,
-                room: room as u32,
-                clips: scene.clips.get(number).copied().unwrap_or_default(),
-                instance: instance as u32,
+                instance_stride: room as u32,
+                clip_stride: scene.clips.get(number).copied().unwrap_or_default(),
+                first_instance: instance as u32,
                 first_clip: scene
                     .share
                     .as_ref()
                     .map_or(0, |share| share.first_clip(&scene.batches, batch, number))
                     as u32,
                 attribute_rows: scene.share.as_ref().map_or(0, |share| share.list.rows()) as u32,
-                present,
+                instance_count: present,
             };
             let room = scene.batches.len(batch) as u32;
-            Part { set, counts: scene.count_sets.get(number), window, instances, room }
+            Part { set, counts: scene.count_sets.get(number), chunk, instances, room }
         })
     }
 
@@ -429,18 +429,18 @@ impl<'a> Run<'a> {
         let [count, first] = self.scene.elements[kind]?;
         let set = self.scene.sets.elements[kind].get(batch as usize)?;
         let instance = instance as u32;
-        let window = Window {
+        let chunk = Chunk {
             count,
-            first,
+            first_id: first,
             capacity: count,
-            room: count,
-            clips: 0,
-            instance,
+            instance_stride: count,
+            clip_stride: 0,
+            first_instance: instance,
             first_clip: 0,
             attribute_rows: 0,
-            present: 0,
+            instance_count: 0,
         };
         let instances = self.count as u32;
-        Some(Part { set, counts: None, window, instances, room: instances })
+        Some(Part { set, counts: None, chunk, instances, room: instances })
     }
 }

@@ -219,10 +219,10 @@ impl SplatList {
         self.levels.windows(2).map(move |pair| {
             let nodes = finer.div_ceil(FAN_OUT).max(1).next_multiple_of(FAN_OUT);
             let step = Level {
-                from: pair[0].start as u32,
-                to: (pair[1].start - written) as u32,
-                nodes: nodes as u32,
-                finer: finer as u32,
+                finer_start: pair[0].start as u32,
+                start: (pair[1].start - written) as u32,
+                count: nodes as u32,
+                finer_count: finer as u32,
             };
             finer = nodes;
             step

@@ -97,7 +97,7 @@ impl Resource {
             Self::Coverage => &[&resource::COVERAGE],
             Self::Nearest => &[&resource::NEAREST],
             Self::NearestDepth => &[&resource::NEAREST_DEPTH],
-            Self::NearestNumber => &[&resource::NEAREST_NUMBER],
+            Self::NearestNumber => &[&resource::NEAREST_ID],
             Self::Pulled => &[&resource::TO_DEPTHS],
             Self::Pushed => &[&resource::FINAL_DEPTHS],
             Self::Picture => &[&resource::PICTURE, &resource::PICTURE_COLOURS],
@@ -206,7 +206,7 @@ fn of_points(variant: &Variant) -> Vec<Option<Description>> {
     vec![
         variant.computes_points().then_some(nearest),
         drawn(Resource::NearestDepth, Format::D32_SFLOAT, &resource::NEAREST_DEPTH),
-        drawn(Resource::NearestNumber, Format::R32_UINT, &resource::NEAREST_NUMBER),
+        drawn(Resource::NearestNumber, Format::R32_UINT, &resource::NEAREST_ID),
         Some(picture(variant.outputs)),
     ]
 }

@@ -75,7 +75,7 @@ fn instance(
     let camera = placed.placement.map_or(*camera, |placement| placement.seen_by(camera));
     let (lens, projection) = lens(&camera, size)?;
     let mut view = view(&lens, &projection, placed.scene.origin());
-    view.first = first;
+    view.first_id = first;
     turn(&mut view, settings, &placement);
     Ok(view)
 }
@@ -84,7 +84,7 @@ fn instance(
 fn turn(view: &mut View, settings: &Settings, placement: &Similarity) {
     let turn = placement.rotation();
     view.scale = placement.scale() as f32;
-    for (column, axis) in view.turn.iter_mut().zip([turn.x_axis, turn.y_axis, turn.z_axis]) {
+    for (column, axis) in view.rotation.iter_mut().zip([turn.x_axis, turn.y_axis, turn.z_axis]) {
         column[..3].copy_from_slice(&axis.as_vec3().to_array());
     }
     for (own, light) in view.to_light.iter_mut().zip(&settings.lighting.directional) {

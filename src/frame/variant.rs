@@ -360,7 +360,7 @@ impl SceneVariant {
             ],
             Scope::Lines | Scope::Triangles => &[
                 (&resource::VERTICES, true),
-                (&resource::ALONGS, self.primitives.lines),
+                (&resource::LINE_DIRECTIONS, self.primitives.lines),
                 (&resource::VERTEX_COLOURS, self.held.vertex_colours),
                 (&resource::ELEMENTS, true),
                 (&resource::LARGE_TRIANGLES, self.primitives.triangles),
@@ -375,7 +375,7 @@ impl SceneVariant {
         self.layout
             .add_to(self.frame.constants())
             .with(constant::UNCHECKED, self.unchecked.is_some())
-            .with(constant::HELD_COLOURS, self.unchecked.map_or(0, |colours| colours as u32))
+            .with(constant::STORED_COLOURS, self.unchecked.map_or(0, |colours| colours as u32))
             .with(constant::ELLIPSES, self.ellipses)
             .with(constant::TWO_SIDED, self.two_sided)
             .with(constant::CLIPS, self.clips)

@@ -274,14 +274,15 @@ impl Scene {
 
     /// Resources and bindings of the lines, or with `kind` 1 of the triangles.
     pub(crate) fn element_bindings(&self, kind: usize) -> Vec<(&'static Resource, Binding<'_>)> {
-        let Some(PrimitiveStreams { vertices, alongs, colours, lines, triangles, .. }) = &self.primitives
+        let Some(PrimitiveStreams { vertices, line_directions, colours, lines, triangles, .. }) =
+            &self.primitives
         else {
             return Vec::new();
         };
         let elements = [lines, triangles][kind].as_ref().map(|elements| &elements.buffer);
         let streams = [
             (&resource::VERTICES, Some(vertices)),
-            (&resource::ALONGS, alongs.as_ref()),
+            (&resource::LINE_DIRECTIONS, line_directions.as_ref()),
             (&resource::VERTEX_COLOURS, colours.as_ref()),
             (&resource::ELEMENTS, elements),
         ];

@@ -13,7 +13,7 @@ pub(crate) struct PrimitiveStreams {
     /// Seven floats per vertex: position, direction, radius. Invalid vertices have a radius below 0.
     pub vertices: Buffer,
     /// Line directions at the vertices, if there are lines.
-    pub alongs: Option<Buffer>,
+    pub line_directions: Option<Buffer>,
     pub colours: Option<Buffer>,
     pub colour_stream: ColourStream,
     pub lines: Option<Elements>,
@@ -39,7 +39,7 @@ impl PrimitiveStreams {
         let textured =
             primitives.texture.as_ref().map(|t| (t, &primitives.positions[..], &primitives.radii[..]));
         let (colour_stream, colours) = colour_bytes(primitives.colours.as_ref(), textured);
-        let alongs =
+        let line_directions =
             || uploads.buffer("line directions", bytemuck::cast_slice(&primitives.line_directions()));
         let segments: Vec<[u32; 2]> =
             primitives.segments().map(|([a, b], tube)| [if tube { a | TUBE } else { a }, b]).collect();
@@ -50,7 +50,7 @@ impl PrimitiveStreams {
         };
         Ok(Some(Self {
             vertices: uploads.buffer("vertices", bytemuck::cast_slice(&vertices))?,
-            alongs: (!segments.is_empty()).then(alongs).transpose()?,
+            line_directions: (!segments.is_empty()).then(line_directions).transpose()?,
             colours: (colour_stream != ColourStream::None)
                 .then(|| uploads.buffer("vertex colours", &colours))
                 .transpose()?,
@@ -77,7 +77,7 @@ impl PrimitiveStreams {
     /// Memory of the streams, bytes.
     pub fn bytes(&self) -> u64 {
         let elements = [&self.lines, &self.triangles].map(|elements| elements.as_ref().map(|e| &e.buffer));
-        let optional = [self.alongs.as_ref(), self.colours.as_ref()].into_iter().chain(elements);
+        let optional = [self.line_directions.as_ref(), self.colours.as_ref()].into_iter().chain(elements);
         self.vertices.size() + optional.flatten().map(Buffer::size).sum::<u64>()
     }
 }

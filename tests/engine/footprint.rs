@@ -28,12 +28,12 @@ struct Drawn {
 impl Drawn {
     /// `None` if it was culled.
     fn new(splat: &frame::Splat) -> Option<Self> {
-        let anchor = [splat.place & 0x7fff, splat.place >> 15 & 0x7fff].map(|p| f64::from(p) + 0.5);
+        let anchor = [splat.anchor & 0x7fff, splat.anchor >> 15 & 0x7fff].map(|p| f64::from(p) + 0.5);
         let pair = |v: [f32; 2]| DVec2::from_array(v.map(f64::from));
         let [major, sqrt_det] = [splat.variance, splat.sqrt_det].map(f64::from);
         let (axis, eigenvalues) = (pair(splat.axis), DVec2::new(major, sqrt_det * (sqrt_det / major)));
         let turn = DMat2::from_cols(axis, axis.perp());
-        (splat.place >> 30 != 0).then(|| Self {
+        (splat.anchor >> 30 != 0).then(|| Self {
             centre: DVec2::from_array(anchor) + pair(splat.offset),
             variance: turn * DMat2::from_diagonal(eigenvalues) * turn.transpose(),
             sqrt_det,

@@ -154,7 +154,7 @@ impl Plan {
     }
 
     /// Whether pixels without visibility have no sums; otherwise the last subpass reads visibility.
-    pub(super) fn sums_tell(&self) -> bool {
+    pub(super) fn visible_by_sums(&self) -> bool {
         self.marks() || self.steps.contains(&Step::Nearest)
     }
 
@@ -229,7 +229,7 @@ impl Plan {
                 colours: vec![drawn(Some(picture)), drawn(normal)],
                 resolves: resolve.map_or(Vec::new(), |resolve| vec![drawn(Some(resolve)), drawn(None)]),
                 inputs: [
-                    if self.sums_tell() { optional(None, Layout::UNDEFINED) } else { kept(visibility) },
+                    if self.visible_by_sums() { optional(None, Layout::UNDEFINED) } else { kept(visibility) },
                     read(sums0),
                 ]
                 .into_iter()

@@ -45,7 +45,7 @@ pub(super) unsafe fn host(plan: &Plan, pass: vk::RenderPass) -> Host {
 
 /// Input attachments and buffers of the shaders.
 pub(super) fn inputs(plan: &Plan) -> Vec<&'static shaders::Resource> {
-    let visibility = (!plan.sums_tell()).then_some(&resource::VISIBILITY_INPUT);
+    let visibility = (!plan.visible_by_sums()).then_some(&resource::VISIBILITY_INPUT);
     let sums1 = plan.formats.sums1.map(|_| &resource::SUMS1_INPUT);
     let depth = plan.seeded().map(|_| &resource::HOST_DEPTH);
     [visibility, Some(&resource::SUMS0_INPUT), sums1, depth].into_iter().flatten().collect()
@@ -79,7 +79,7 @@ fn constants(plan: &Plan, step: Step) -> Constants {
     match step {
         Step::Seed => Constants::default().with(constant::HOST_SAMPLES, plan.host.samples.as_raw()),
         Step::Normalize => Constants::default()
-            .with(constant::SUMS_TELL, plan.sums_tell())
+            .with(constant::VISIBLE_BY_SUMS, plan.visible_by_sums())
             .with(constant::HOST_DEPTH, plan.host.reversed.is_some())
             .with(constant::ENCODE, plan.host.encode),
         Step::Visibility | Step::Attribute | Step::Nearest => Constants::default(),

@@ -29,7 +29,7 @@ pub struct ColourMapViews {
 impl ColourMap {
     /// Creates the pass for pictures of `shading`, within `pass`.
     pub fn new(device: &Arc<Device>, shading: Shading, pass: &RenderPass) -> Result<Self> {
-        let seen = [&resource::SCREEN, &resource::NUMBER_RANGE, &resource::MAP_COLOURS];
+        let seen = [&resource::SCREEN, &resource::VALUE_RANGE, &resource::MAP_COLOURS];
         let layout = SetLayout::of(device, seen)?;
         let modules = [&shaders::COLOUR_MAP_VERTEX, &shaders::COLOUR_MAP_FRAGMENT];
         let constants = Constants::default().with(constant::SHADING, shading as u32);
@@ -54,7 +54,7 @@ impl ColourMap {
     ) -> Result<ColourMapViews> {
         let bindings = [
             (&resource::SCREEN, Binding::Sampled(picture)),
-            (&resource::NUMBER_RANGE, Binding::whole(range)),
+            (&resource::VALUE_RANGE, Binding::whole(range)),
             (&resource::MAP_COLOURS, Binding::whole(&self.colours)),
         ];
         Ok(ColourMapViews {
@@ -70,7 +70,7 @@ impl ColourMap {
         views: &ColourMapViews,
         (picture, range, image): (&Image, &Buffer, &Image),
         background: [f32; 3],
-        parameters: layout::Numbers,
+        parameters: layout::ScalarOptions,
     ) {
         let read = Access::of_shader(ShaderStageFlags::FRAGMENT, false);
         let uses = [picture.with(read.of_image()), range.with(read), image.with(Access::COLOUR_WRITE)];

@@ -17,21 +17,19 @@ pub struct Range(ComputePipeline);
 impl Range {
     /// The pass.
     pub fn new(device: &Arc<Device>) -> Result<Self> {
-        let layout = SetLayout::of(device, [&resource::SCREEN, &resource::NUMBER_RANGE])?;
+        let layout = SetLayout::of(device, [&resource::SCREEN, &resource::VALUE_RANGE])?;
         ComputePipeline::new(device, &[&layout], &shaders::RANGE_COMPUTE, &Constants::default()).map(Self)
     }
 
     /// Creates a buffer for a range.
     pub fn buffer(device: &Arc<Device>) -> Result<Buffer> {
-        Buffer::storage(device, "range", size_of::<layout::NumberRange>() as u64)
+        Buffer::storage(device, "range", size_of::<layout::ValueRange>() as u64)
     }
 
     /// Descriptor set of a picture and its range, which must outlive it.
     pub fn view(device: &Arc<Device>, picture: &Image, range: &Buffer) -> Result<DescriptorSet> {
-        let bindings = [
-            (&resource::SCREEN, Binding::Sampled(picture)),
-            (&resource::NUMBER_RANGE, Binding::whole(range)),
-        ];
+        let bindings =
+            [(&resource::SCREEN, Binding::Sampled(picture)), (&resource::VALUE_RANGE, Binding::whole(range))];
         DescriptorSet::new(device, &bindings)
     }
 
@@ -42,7 +40,7 @@ impl Range {
         view: &DescriptorSet,
         picture: &Image,
         range: &Buffer,
-        parameters: layout::Numbers,
+        parameters: layout::ScalarOptions,
     ) {
         rec.pass("clear range", &[range.with(Access::COPY_WRITE)]).ones(range);
         let [read, write] = [false, true].map(|write| Access::of_shader(ShaderStageFlags::COMPUTE, write));
@@ -54,7 +52,7 @@ impl Range {
 
 /// The minimum and maximum of a range that was read back; `None` if no pixel shows a surface.
 pub fn range_of(bytes: &[u8]) -> Option<[f32; 2]> {
-    let layout::NumberRange { least, greatest } = bytemuck::pod_read_unaligned(bytes);
+    let layout::ValueRange { least, greatest } = bytemuck::pod_read_unaligned(bytes);
     let number = |bits: u32| f32::from_bits(if bits & 0x8000_0000 != 0 { bits & 0x7fff_ffff } else { !bits });
     let visible = [least, greatest] != [u32::MAX; 2];
     visible.then(|| [number(least), number(!greatest)])

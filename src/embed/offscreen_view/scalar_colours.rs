@@ -53,7 +53,7 @@ impl ScalarColours {
         let opaque = settings.background.is_some();
         // Scalars are not blended with a background: α ≥ ½ decides.
         let least_alpha = if opaque { 0.5 } else { LEAST_ALPHA };
-        let parameters = layout::Numbers { least_alpha, opaque: opaque.into() };
+        let parameters = layout::ScalarOptions { least_alpha, opaque: opaque.into() };
         if self.has_range() {
             self.range_pass.record(rec, &self.range_view, picture, &self.range, parameters);
         }

@@ -25,6 +25,6 @@ fn record(steps: &Steps<'_>, rec: &mut Recorder<'_>) {
     for level in splats.steps(steps.frame.splat_count) {
         let uses = [splats.boxes().with(Access::COMPUTE_WRITE)];
         let mut enc = rec.pass(BOXES.name, &uses);
-        enc.dispatch(pipeline, &sets, &level, grid_over(level.nodes.into()));
+        enc.dispatch(pipeline, &sets, &level, grid_over(level.count.into()));
     }
 }

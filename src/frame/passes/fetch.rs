@@ -3,7 +3,7 @@
 use crate::frame::pass::{Commands, Over, Pass, Program, Programs};
 use crate::frame::resource::Resource::{Nearest, NearestNumber, Pulled};
 use crate::vk::shaders::{
-    FETCH_COMPUTE, FETCH_DRAWN_POINTS_COMPUTE, FETCH_LINES_COMPUTE, FETCH_TRIANGLES_COMPUTE,
+    FETCH_COMPUTE, FETCH_LINES_COMPUTE, FETCH_RASTER_POINTS_COMPUTE, FETCH_TRIANGLES_COMPUTE,
 };
 
 /// An invocation a pixel, for each part of a scene: the pixels of one's points are not another's, so that their order does not matter. The first
@@ -16,7 +16,7 @@ pub static FETCH: Pass = Pass {
     programs: Programs::OfScene(|variant| {
         let surfels = match variant.frame.computes_points() {
             true => &FETCH_COMPUTE,
-            false => &FETCH_DRAWN_POINTS_COMPUTE,
+            false => &FETCH_RASTER_POINTS_COMPUTE,
         };
         let lines = Program::compute(&FETCH_LINES_COMPUTE, Over::PixelsOfLines);
         let triangles = Program::compute(&FETCH_TRIANGLES_COMPUTE, Over::PixelsOfTriangles);

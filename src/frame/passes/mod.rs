@@ -22,7 +22,7 @@ use crate::frame::pass::{Over, Program};
 use crate::frame::variant::Variant;
 use crate::vk::shaders::Module;
 
-/// Id of the specialization constant that is the size of the workgroups of passes over tiles: LANES of `lib/team.glsl`.
+/// Id of the specialization constant that is the size of the workgroups of passes over tiles: LANES of `lib/workgroup.glsl`.
 const LANES: u32 = 44;
 
 /// The program of a pass over tiles, whose teams pass values on by shared memory or, the second, by subgroups.

@@ -6,8 +6,8 @@ use crate::frame::pass::{Commands, Over, Pass, Program, Programs, Start, Targets
 use crate::frame::resource::Resource::{Counts, LargeTriangles, Nearest, NearestDepth, NearestNumber};
 use crate::frame::variant::SceneVariant;
 use crate::vk::shaders::{
-    POINTS_FRAGMENT, POINTS_VERTEX, PROJECT_COMPUTE, PROJECT_COUNTED_COMPUTE, PROJECT_DRAWN_POINTS_COMPUTE,
-    PROJECT_LINES_COMPUTE, PROJECT_TRIANGLES_COMPUTE, constant,
+    POINTS_FRAGMENT, POINTS_VERTEX, PROJECT_COMPUTE, PROJECT_COUNT_ONLY_COMPUTE, PROJECT_LINES_COMPUTE,
+    PROJECT_RASTER_POINTS_COMPUTE, PROJECT_TRIANGLES_COMPUTE, constant,
 };
 use crate::vk::{Blend, DepthTest, Topology};
 
@@ -68,7 +68,7 @@ pub static HANDED_OVER: Pass = Pass {
     reads: &[NearestDepth, NearestNumber],
     writes: &[Nearest],
     clears: &[],
-    programs: Programs::OfFrame(|_| vec![Program::compute(&PROJECT_DRAWN_POINTS_COMPUTE, Over::Pixels)]),
+    programs: Programs::OfFrame(|_| vec![Program::compute(&PROJECT_RASTER_POINTS_COMPUTE, Over::Pixels)]),
     commands: Commands::Dispatches,
 };
 
@@ -79,7 +79,7 @@ pub static BESIDE_DRAWN: Pass = Pass {
     writes: &[Nearest, LargeTriangles, Counts],
     clears: &[LargeTriangles, Counts],
     programs: Programs::OfScene(|variant| {
-        let counted = Program::compute(&PROJECT_COUNTED_COMPUTE, Over::Surfels);
+        let counted = Program::compute(&PROJECT_COUNT_ONLY_COMPUTE, Over::Surfels);
         variant.frame.count.then_some(counted).into_iter().chain(primitives(variant)).collect()
     }),
     commands: Commands::Dispatches,

@@ -13,7 +13,7 @@ const WIDEST: f64 = 4.0;
 /// Factor that widens the strands of a ribbon: discs that only touch leave holes between them.
 const SPREAD: f64 = 1.5;
 /// Most strands of a line: just in front of the eye, widths are unbounded.
-const MOST: f64 = 64.0;
+const MOST_STRANDS: f64 = 64.0;
 
 /// An end of a segment.
 #[derive(Clone, Copy, Debug)]
@@ -47,7 +47,7 @@ impl Reconstruction {
             return vec![Strand { ends: discs, discs, tube, on_tube: false }];
         }
         let around = if tube { 0.5 * PI } else { 1.0 };
-        let count = (around * half / WIDEST).ceil().min(MOST);
+        let count = (around * half / WIDEST).ceil().min(MOST_STRANDS);
         let strand = |i: u32| {
             if tube {
                 Strand {

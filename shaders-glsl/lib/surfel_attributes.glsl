@@ -1,0 +1,22 @@
+// Attributes of a surfel: the vectors that targets sum, see lib/sums.glsl.
+
+#include "lib/shading.glsl"
+#include "lib/surfels.glsl"
+
+layout(constant_id = 20) const bool SHADE_SPLATS = false; // summed colours are lit: splats are lit at their centres
+
+DEFINE_COLOURS(colour_of, COLOURS, colours, COLOUR_OFFSET, COLOUR_STRIDE)
+DEFINE_COORDINATES(coordinates_of, colours)
+
+// Unit vector from surfel i to the eye.
+vec3 to_eye_of(uint i) {
+    return PERSPECTIVE ? normalize(view.eye_hi.xyz - position_of(i) + view.eye_lo.xyz) : -view.forward_hi.xyz;
+}
+
+// Attributes that the two targets sum of surfel i; the sign of `epsilon` selects the visible side.
+void surfel_attributes(uint i, float epsilon, out vec3 attribute0, out vec3 attribute1) {
+    vec3 normal = sign(epsilon) * normal_of(i);
+    attribute1 = SUM_COLOURS ? colour_of(i) : vec3(0.0);
+    if (SHADE_SPLATS) attribute1 = lit(FRAME_SHINE, attribute1, normal, to_eye_of(i));
+    attribute0 = SUM_NORMALS ? to_world(normal) : attribute1;
+}

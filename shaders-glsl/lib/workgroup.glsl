@@ -1,0 +1,58 @@
+// Workgroups of tile passes: LANES invocations that own a tile and exchange values. They are one subgroup (SUBGROUPS), or use shared memory
+// and barriers.
+
+layout(local_size_x_id = 44) in;
+
+const uint LANES = gl_WorkGroupSize.x;
+
+// Steps of a butterfly over all lanes, a distance of 1 << k each. Loops over k are unrolled; loops that double a distance are not.
+const uint STEPS = LANES > 32 ? 6 : LANES > 16 ? 5 : LANES > 8 ? 4 : 3;
+
+#ifdef SUBGROUPS
+
+#define lane gl_SubgroupInvocationID
+
+// Makes writes to shared memory visible to the workgroup.
+#define WORKGROUP_BARRIER() subgroupBarrier()
+
+#define DEFINE_SHUFFLE(TYPE, POOL)                                                                                        \
+    TYPE shuffle(TYPE value, uint source) { return subgroupShuffle(value, source); }
+
+#else
+
+#define lane gl_LocalInvocationIndex
+#define WORKGROUP_BARRIER() barrier()
+
+#define DEFINE_SHUFFLE(TYPE, POOL)                                                                                        \
+    shared TYPE POOL[LANES];                                                                                           \
+    TYPE shuffle(TYPE value, uint source) {                                                                              \
+        barrier();                                                                                                     \
+        POOL[lane] = value;                                                                                            \
+        barrier();                                                                                                     \
+        return POOL[source % LANES];                                                                                           \
+    }
+
+#endif
+
+DEFINE_SHUFFLE(float, float_shuffle)
+DEFINE_SHUFFLE(vec2, vec2_shuffle)
+DEFINE_SHUFFLE(vec3, vec3_shuffle)
+DEFINE_SHUFFLE(vec4, vec4_shuffle)
+DEFINE_SHUFFLE(uint, uint_shuffle)
+
+// Bit k is the condition of lane k.
+uint workgroup_ballot(bool condition) {
+    uint bits = uint(condition) << lane;
+    for (uint k = 0; k < STEPS; k++) bits |= shuffle(bits, lane ^ 1u << k);
+    return bits;
+}
+
+float workgroup_min(float value) {
+    for (uint k = 0; k < STEPS; k++) value = min(value, shuffle(value, lane ^ 1u << k));
+    return value;
+}
+
+float workgroup_max(float value) {
+    for (uint k = 0; k < STEPS; k++) value = max(value, shuffle(value, lane ^ 1u << k));
+    return value;
+}
