@@ -3,6 +3,8 @@
 #pragma variant COVERAGE VERTEX FRAGMENT
 #pragma variant CLIP_LINES VERTEX FRAGMENT
 #pragma variant SUBGROUPS COMPUTE
+#pragma variant SLICES COMPUTE
+#pragma variant SUBGROUPS_SLICES COMPUTE
 #extension GL_GOOGLE_include_directive : require
 #include "lib/tile_pass.glsl"
 
@@ -19,11 +21,13 @@
 
 #ifdef COMPUTE
 
+#ifdef SLICES
 // State between the dispatches of a sliced frame: depth of each pixel, index of its splat, coverage.
 #define VISIBILITY_ACCESS
 #define SUMS_ACCESS
 #include "lib/pixels.glsl"
 layout(set = 1, binding = 5, std430) buffer Coverage { uint coverage[]; };
+#endif
 
 #define NEAREST_SPLAT
 #include "lib/tile.glsl"
@@ -44,6 +48,7 @@ Pixel pixel_of(uvec2 coordinates, bool visible, uint id, float alpha) {
 void main() {
     load_frame();
     uvec2 origin = tile_origin();
+#ifdef SLICES
     for (uint r = 0; r < ROWS; r++) {
         uvec2 coordinates = origin + lane_pixel(r);
         uint pixel = is_in_viewport(coordinates) ? pixel_index(ivec2(coordinates)) : 0;
@@ -51,22 +56,25 @@ void main() {
         if (is_resumed()) nearest_splats[r] = floatBitsToUint(sums0[pixel]);
         if (is_resumed() && COVERAGE) coverage_masks[r] = coverage[pixel];
     }
+#endif
     compute_visibility(origin);
     if (COVERAGE) compute_coverage(origin);
+#ifdef SLICES
     for (uint r = 0; r < ROWS; r++) {
         uvec2 coordinates = origin + lane_pixel(r);
-        if (!SLICED || !is_in_viewport(coordinates)) continue;
+        if (!is_in_viewport(coordinates)) continue;
         uint pixel = pixel_index(ivec2(coordinates));
         visibility[pixel] = floatBitsToUint(depths[r]);
         sums0[pixel] = uintBitsToFloat(nearest_splats[r]);
         if (COVERAGE) coverage[pixel] = coverage_masks[r];
     }
     if (!is_last_slice()) return;
+#endif
     for (uint r = 0; r < ROWS; r++) {
         uvec2 coordinates = origin + lane_pixel(r);
         float alpha = COVERAGE ? bitCount(coverage_masks[r]) / 16.0 : 1.0;
         Pixel pixel = pixel_of(coordinates, depths[r] > 0.0, nearest_splats[r], alpha);
-        if (is_in_viewport(coordinates)) store_pixel(coordinates.y * uint(frame.viewport.x) + coordinates.x, pixel);
+        if (is_in_viewport(coordinates)) store_pixel(ivec2(coordinates), pixel);
     }
 }
 

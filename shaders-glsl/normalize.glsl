@@ -50,9 +50,9 @@ void main() {
     uint width = uint(frame.viewport.x), pixels = width * uint(frame.viewport.y);
     uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     if (i >= pixels) return;
-    vec2 centre = vec2(i % width, i / width) + 0.5;
+    uvec2 at = uvec2(i % width, i / width);
     vec4 s0 = fetch0(i, WIDE_SUMS0);
-    store_pixel(i, normalize_pixel(centre, visibility[i] != 0u, alpha_of(i), s0, fetch1(i)));
+    store_pixel(ivec2(at), normalize_pixel(vec2(at) + 0.5, visibility[i] != 0u, alpha_of(i), s0, fetch1(i)));
 }
 
 #endif

@@ -1,6 +1,8 @@
 // Shade: lights the final level 0 pixel by pixel and writes picture, normal, depth and id (marroquim2008 §3.4).
 #version 450
 #pragma variant LOOKUPS
+#pragma variant STORE_IDS
+#pragma variant LOOKUPS_STORE_IDS
 #extension GL_GOOGLE_include_directive : require
 
 #ifdef COMPUTE
@@ -17,16 +19,17 @@ DEFINE_LOAD(final)
 
 layout(constant_id = 25) const bool MATERIALS = false; // points have materials
 
-#ifdef LOOKUPS
+#if defined(LOOKUPS) || defined(LOOKUPS_STORE_IDS)
+#define WITH_LOOKUPS
 #include "lib/texture.glsl"
 #include "lib/materials.glsl"
 #endif
 
-layout(constant_id = 9) const bool OUT_NORMAL = false;
-layout(constant_id = 10) const bool OUT_DEPTH = false;
-layout(constant_id = 35) const bool OUT_ID = false;
+#include "lib/output_images.glsl"
 
-layout(set = 1, binding = 3, std430) writeonly buffer Picture { uint picture[]; }; // bits: colours, then normals, then depths, then ids
+#if defined(STORE_IDS) || defined(LOOKUPS_STORE_IDS)
+layout(set = 1, binding = 21, r32ui) writeonly uniform uimage2D id_output;
+#endif
 
 layout(constant_id = 31) const bool COVERAGE = false; // α is the covered part of a pixel, not whether its centre is covered
 
@@ -64,9 +67,7 @@ float coverage_of(ivec2 pixel) {
 void main() {
     ivec2 pixel = invocation_pixel(0);
     if (pixel.x < 0) return;
-    uvec2 size = uvec2(frame.viewport);
-    uint pixels = size.x * size.y, i = uint(pixel.y) * size.x + uint(pixel.x);
-    Sample s = load_final(i);
+    Sample s = load_final(uint(pixel.y) * uint(frame.viewport.x) + uint(pixel.x));
     vec4 image = frame.background;
     if (s.near > 0.0) {
         vec2 centre = vec2(pixel) + 0.5;
@@ -74,7 +75,7 @@ void main() {
         vec3 to_eye = PERSPECTIVE ? -normalize(ray) : -view.forward_hi.xyz;
         vec3 colour = SUM_COLOURS ? s.colour : frame.albedo.rgb;
         Shine shine = FRAME_SHINE;
-#ifdef LOOKUPS
+#ifdef WITH_LOOKUPS
         if (TEXTURE) colour = texture_colour(pixel, s);
         if (MATERIALS) shine = shine_of(s.id);
 #endif
@@ -90,10 +91,10 @@ void main() {
         if (SHADING == DEPTH) shaded = vec3(s.depth);
         image = over_background(shaded, COVERAGE ? coverage_of(pixel) : 1.0);
     }
-    for (uint k = 0; k < 4; k++) picture[4 * i + k] = floatBitsToUint(image[k]);
-    if (OUT_NORMAL) for (uint k = 0; k < 3; k++) picture[4 * pixels + 3 * i + k] = floatBitsToUint(s.normal[k]);
-    if (OUT_DEPTH) picture[(OUT_NORMAL ? 7 : 4) * pixels + i] = floatBitsToUint(s.depth);
-    if (OUT_ID) picture[((OUT_NORMAL ? 7 : 4) + (OUT_DEPTH ? 1 : 0)) * pixels + i] = s.id;
+    store_outputs(pixel, image, s.normal, s.depth);
+#if defined(STORE_IDS) || defined(LOOKUPS_STORE_IDS)
+    imageStore(id_output, pixel, uvec4(s.id));
+#endif
 }
 
 #endif

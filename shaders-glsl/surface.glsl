@@ -24,7 +24,7 @@ void main() {
         uvec2 pixel = origin + lane_pixel(r);
         float alpha = COVERAGE ? bitCount(coverage_masks[r]) / 16.0 : 1.0;
         Pixel result = normalize_pixel(vec2(pixel) + 0.5, depths[r] > 0.0, alpha, tile_sums0[r], tile_sums1[r]);
-        if (is_in_viewport(pixel)) store_pixel(pixel.y * uint(frame.viewport.x) + pixel.x, result);
+        if (is_in_viewport(pixel)) store_pixel(ivec2(pixel), result);
     }
 }
 

@@ -56,7 +56,7 @@ pub static ATTRIBUTE_SUBGROUPS_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("attribute_subgroups_compute.spv"),
     constants: &[0, 3, 4, 14, 15, 16, 17, 19, 23, 24, 44, 45, 46, 47],
-    resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, false), (&resource::SUMS0, true), (&resource::SUMS1, true), (&resource::FRAME_CLIPS, false), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, false), (&resource::SUMS0, true), (&resource::SUMS1, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
 
@@ -116,16 +116,6 @@ pub static COMPOSITE_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("composite_fragment.spv"),
     constants: &[0, 40, 41],
-    resources: &[(&resource::FRAME_PICTURE, false)],
-    push: size_of::<layout::Composite>() as u32,
-};
-
-/// The fragment stage of `shaders-glsl/composite.glsl`.
-pub static COMPOSITE_IMAGES_FRAGMENT: Module = Module {
-    name: "composite_images_fragment",
-    stage: ShaderStageFlags::FRAGMENT,
-    spirv: spirv!("composite_images_fragment.spv"),
-    constants: &[0, 40, 41],
     resources: &[(&resource::PICTURE_IMAGE, false), (&resource::DEPTH_IMAGE, false)],
     push: size_of::<layout::Composite>() as u32,
 };
@@ -135,16 +125,6 @@ pub static COMPOSITE_NORMALS_FRAGMENT: Module = Module {
     name: "composite_normals_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("composite_normals_fragment.spv"),
-    constants: &[0, 40, 41],
-    resources: &[(&resource::FRAME_PICTURE, false)],
-    push: size_of::<layout::Composite>() as u32,
-};
-
-/// The fragment stage of `shaders-glsl/composite.glsl`.
-pub static COMPOSITE_IMAGES_NORMALS_FRAGMENT: Module = Module {
-    name: "composite_images_normals_fragment",
-    stage: ShaderStageFlags::FRAGMENT,
-    spirv: spirv!("composite_images_normals_fragment.spv"),
     constants: &[0, 40, 41],
     resources: &[(&resource::PICTURE_IMAGE, false), (&resource::NORMAL_IMAGE, false), (&resource::DEPTH_IMAGE, false)],
     push: size_of::<layout::Composite>() as u32,
@@ -156,7 +136,7 @@ pub static COMPOSITE_IDS_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("composite_ids_fragment.spv"),
     constants: &[0, 40, 41],
-    resources: &[(&resource::FRAME_PICTURE, false)],
+    resources: &[(&resource::PICTURE_IMAGE, false), (&resource::DEPTH_IMAGE, false), (&resource::ID_IMAGE, false)],
     push: size_of::<layout::Composite>() as u32,
 };
 
@@ -166,7 +146,7 @@ pub static COMPOSITE_NORMALS_IDS_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("composite_normals_ids_fragment.spv"),
     constants: &[0, 40, 41],
-    resources: &[(&resource::FRAME_PICTURE, false)],
+    resources: &[(&resource::PICTURE_IMAGE, false), (&resource::NORMAL_IMAGE, false), (&resource::DEPTH_IMAGE, false), (&resource::ID_IMAGE, false)],
     push: size_of::<layout::Composite>() as u32,
 };
 
@@ -256,7 +236,7 @@ pub static NEAREST_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_compute.spv"),
     constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::SUMS0, true), (&resource::PICTURE, true), (&resource::PICTURE_COLOURS, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
 
@@ -306,7 +286,27 @@ pub static NEAREST_SUBGROUPS_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_subgroups_compute.spv"),
     constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::SUMS0, true), (&resource::PICTURE, true), (&resource::PICTURE_COLOURS, true), (&resource::COVERAGE, true), (&resource::FRAME_CLIPS, false), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false)],
+    push: size_of::<layout::Hierarchy>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/nearest.glsl`.
+pub static NEAREST_SLICES_COMPUTE: Module = Module {
+    name: "nearest_slices_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("nearest_slices_compute.spv"),
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::SUMS0, true), (&resource::IMAGE_OUTPUT, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
+    push: size_of::<layout::Hierarchy>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/nearest.glsl`.
+pub static NEAREST_SUBGROUPS_SLICES_COMPUTE: Module = Module {
+    name: "nearest_subgroups_slices_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("nearest_subgroups_slices_compute.spv"),
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::SUMS0, true), (&resource::IMAGE_OUTPUT, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
 
@@ -336,7 +336,7 @@ pub static NORMALIZE_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("normalize_compute.spv"),
     constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, false), (&resource::SUMS1, false), (&resource::PICTURE, true), (&resource::PICTURE_COLOURS, true)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, false), (&resource::SUMS1, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: 0,
 };
 
@@ -366,7 +366,7 @@ pub static NORMALIZE_COVERAGE_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("normalize_coverage_compute.spv"),
     constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, false), (&resource::SUMS1, false), (&resource::PICTURE, true), (&resource::PICTURE_COLOURS, true), (&resource::COVERAGE, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, false), (&resource::SUMS1, false), (&resource::IMAGE_OUTPUT, true), (&resource::COVERAGE, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: 0,
 };
 
@@ -525,8 +525,8 @@ pub static SHADE_COMPUTE: Module = Module {
     name: "shade_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 33, 34, 35, 38, 39],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::PICTURE, true), (&resource::FINAL_DEPTHS, false), (&resource::FINAL_DISPLACEMENTS, false), (&resource::FINAL_NORMALS, false), (&resource::FINAL_COLOURS, false), (&resource::FINAL_IDS, false)],
+    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 33, 34, 38],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::FINAL_DEPTHS, false), (&resource::FINAL_DISPLACEMENTS, false), (&resource::FINAL_NORMALS, false), (&resource::FINAL_COLOURS, false)],
     push: 0,
 };
 
@@ -535,8 +535,28 @@ pub static SHADE_LOOKUPS_COMPUTE: Module = Module {
     name: "shade_lookups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_lookups_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 33, 34, 35, 36, 38, 39],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::PICTURE, true), (&resource::FINAL_DEPTHS, false), (&resource::FINAL_DISPLACEMENTS, false), (&resource::FINAL_NORMALS, false), (&resource::FINAL_COLOURS, false), (&resource::FINAL_IDS, false)],
+    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 33, 34, 36, 38, 39],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::FINAL_DEPTHS, false), (&resource::FINAL_DISPLACEMENTS, false), (&resource::FINAL_NORMALS, false), (&resource::FINAL_COLOURS, false), (&resource::FINAL_IDS, false)],
+    push: 0,
+};
+
+/// The compute stage of `shaders-glsl/shade.glsl`.
+pub static SHADE_STORE_IDS_COMPUTE: Module = Module {
+    name: "shade_store_ids_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("shade_store_ids_compute.spv"),
+    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 33, 34, 38, 39],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::ID_OUTPUT, true), (&resource::FINAL_DEPTHS, false), (&resource::FINAL_DISPLACEMENTS, false), (&resource::FINAL_NORMALS, false), (&resource::FINAL_COLOURS, false), (&resource::FINAL_IDS, false)],
+    push: 0,
+};
+
+/// The compute stage of `shaders-glsl/shade.glsl`.
+pub static SHADE_LOOKUPS_STORE_IDS_COMPUTE: Module = Module {
+    name: "shade_lookups_store_ids_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("shade_lookups_store_ids_compute.spv"),
+    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 33, 34, 36, 38, 39],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::ID_OUTPUT, true), (&resource::FINAL_DEPTHS, false), (&resource::FINAL_DISPLACEMENTS, false), (&resource::FINAL_NORMALS, false), (&resource::FINAL_COLOURS, false), (&resource::FINAL_IDS, false)],
     push: 0,
 };
 
@@ -546,7 +566,7 @@ pub static SURFACE_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_compute.spv"),
     constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::PICTURE, true), (&resource::PICTURE_COLOURS, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
 
@@ -556,7 +576,7 @@ pub static SURFACE_SUBGROUPS_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_subgroups_compute.spv"),
     constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::PICTURE, true), (&resource::PICTURE_COLOURS, true), (&resource::FRAME_CLIPS, false), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
 
@@ -636,7 +656,7 @@ pub static VISIBILITY_SUBGROUPS_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("visibility_subgroups_compute.spv"),
     constants: &[0, 15, 16, 23, 24, 31, 44, 47],
-    resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, true), (&resource::COVERAGE, true), (&resource::FRAME_CLIPS, false), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
 
@@ -704,8 +724,6 @@ pub mod constant {
     pub const NORMAL_STRIDE: u32 = 53;
     /// `OUT_DEPTH`, first in `shaders-glsl/nearest.glsl`.
     pub const OUT_DEPTH: u32 = 10;
-    /// `OUT_ID`, first in `shaders-glsl/shade.glsl`.
-    pub const OUT_ID: u32 = 35;
     /// `OUT_NORMAL`, first in `shaders-glsl/nearest.glsl`.
     pub const OUT_NORMAL: u32 = 9;
     /// `OVERLAP`, first in `shaders-glsl/attribute.glsl`.
@@ -861,15 +879,6 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `FramePicture`, first in `shaders-glsl/composite.glsl`.
-    pub static FRAME_PICTURE: Resource = Resource {
-        name: "FramePicture",
-        set: 0,
-        binding: 0,
-        kind: DescriptorType::STORAGE_BUFFER,
-        stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
-    };
-
     /// `FrameSplats`, first in `shaders-glsl/attribute.glsl`.
     pub static FRAME_SPLATS: Resource = Resource {
         name: "FrameSplats",
@@ -931,24 +940,6 @@ pub mod resource {
         binding: 3,
         kind: DescriptorType::STORAGE_BUFFER,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
-    };
-
-    /// `Picture`, first in `shaders-glsl/nearest.glsl`.
-    pub static PICTURE: Resource = Resource {
-        name: "Picture",
-        set: 1,
-        binding: 3,
-        kind: DescriptorType::STORAGE_BUFFER,
-        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
-    };
-
-    /// `PictureColours`, first in `shaders-glsl/nearest.glsl`.
-    pub static PICTURE_COLOURS: Resource = Resource {
-        name: "PictureColours",
-        set: 1,
-        binding: 3,
-        kind: DescriptorType::STORAGE_BUFFER,
-        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
     /// `Positions`, first in `shaders-glsl/attribute.glsl`.
@@ -1113,6 +1104,15 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
+    /// `clip_texels`, first in `shaders-glsl/attribute.glsl`.
+    pub static CLIP_TEXELS: Resource = Resource {
+        name: "clip_texels",
+        set: 1,
+        binding: 22,
+        kind: DescriptorType::UNIFORM_TEXEL_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
     /// `depth_image`, first in `shaders-glsl/composite.glsl`.
     pub static DEPTH_IMAGE: Resource = Resource {
         name: "depth_image",
@@ -1120,6 +1120,15 @@ pub mod resource {
         binding: 3,
         kind: DescriptorType::SAMPLED_IMAGE,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
+    /// `depth_output`, first in `shaders-glsl/nearest.glsl`.
+    pub static DEPTH_OUTPUT: Resource = Resource {
+        name: "depth_output",
+        set: 1,
+        binding: 20,
+        kind: DescriptorType::STORAGE_IMAGE,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
     /// `finalColours`, first in `shaders-glsl/shade.glsl`.
@@ -1221,6 +1230,33 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
     };
 
+    /// `id_image`, first in `shaders-glsl/composite.glsl`.
+    pub static ID_IMAGE: Resource = Resource {
+        name: "id_image",
+        set: 0,
+        binding: 4,
+        kind: DescriptorType::SAMPLED_IMAGE,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
+    /// `id_output`, first in `shaders-glsl/shade.glsl`.
+    pub static ID_OUTPUT: Resource = Resource {
+        name: "id_output",
+        set: 1,
+        binding: 21,
+        kind: DescriptorType::STORAGE_IMAGE,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `image_output`, first in `shaders-glsl/nearest.glsl`.
+    pub static IMAGE_OUTPUT: Resource = Resource {
+        name: "image_output",
+        set: 1,
+        binding: 3,
+        kind: DescriptorType::STORAGE_IMAGE,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
     /// `nearest_depth`, first in `shaders-glsl/project.glsl`.
     pub static NEAREST_DEPTH: Resource = Resource {
         name: "nearest_depth",
@@ -1246,6 +1282,15 @@ pub mod resource {
         binding: 2,
         kind: DescriptorType::SAMPLED_IMAGE,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
+    /// `normal_output`, first in `shaders-glsl/nearest.glsl`.
+    pub static NORMAL_OUTPUT: Resource = Resource {
+        name: "normal_output",
+        set: 1,
+        binding: 19,
+        kind: DescriptorType::STORAGE_IMAGE,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
     /// `picture_image`, first in `shaders-glsl/composite.glsl`.
@@ -1412,21 +1457,18 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Chunk, instance_count) == 32);
     const _: () = assert!(std::mem::size_of::<Chunk>() == 36);
 
-    /// `Composite`, 32 bytes, first in `shaders-glsl/composite.glsl`.
+    /// `Composite`, 24 bytes, first in `shaders-glsl/composite.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Composite {
         /// Byte 0.
-        pub origin: [i32; 2],
-        /// Byte 8.
-        pub size: [u32; 2],
-        /// Byte 16.
         pub depth: [f32; 4],
+        /// Byte 16.
+        pub origin: [i32; 2],
     }
-    const _: () = assert!(std::mem::offset_of!(Composite, origin) == 0);
-    const _: () = assert!(std::mem::offset_of!(Composite, size) == 8);
-    const _: () = assert!(std::mem::offset_of!(Composite, depth) == 16);
-    const _: () = assert!(std::mem::size_of::<Composite>() == 32);
+    const _: () = assert!(std::mem::offset_of!(Composite, depth) == 0);
+    const _: () = assert!(std::mem::offset_of!(Composite, origin) == 16);
+    const _: () = assert!(std::mem::size_of::<Composite>() == 24);
 
     /// `Counts`, 20 bytes, first in `shaders-glsl/fetch.glsl`.
     #[repr(C)]

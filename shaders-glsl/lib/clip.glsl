@@ -26,7 +26,9 @@ struct ScreenClip {
 
 const vec4 NO_LINE = vec4(1e30, 0.0, 0.0, 0.0);
 
-#if defined(READS_CLIPS) && defined(TILE_PASS)
+#if defined(READS_CLIPS) && defined(SUBGROUPS)
+layout(set = 1, binding = 22) uniform utextureBuffer clip_texels; // bits of the two lines of each clip
+#elif defined(READS_CLIPS) && defined(TILE_PASS)
 layout(set = 1, binding = 9, std430) readonly buffer FrameClips { ScreenClip screen_clips[]; };
 #elif defined(READS_CLIPS)
 // Of the scene: for every surfel of the chunk 0, or 1 + the index of its clip, with CONCAVE for a concave corner; then the clips, each two
@@ -38,7 +40,10 @@ layout(set = 0, binding = 10, std430) CLIP_ACCESS buffer ScreenClips { ScreenCli
 
 // The projected clip with this screen_clip_index.
 ScreenClip screen_clip(uint index) {
-#ifdef READS_CLIPS
+#if defined(READS_CLIPS) && defined(SUBGROUPS)
+    int i = int(2 * index);
+    return ScreenClip(uintBitsToFloat(texelFetch(clip_texels, i)), uintBitsToFloat(texelFetch(clip_texels, i + 1)));
+#elif defined(READS_CLIPS)
     return screen_clips[index];
 #else
     return ScreenClip(NO_LINE, NO_LINE);

@@ -42,18 +42,10 @@ Pixel normalize_pixel(vec2 centre, bool visible, float alpha, vec4 s0, vec4 s1) 
 
 #ifdef COMPUTE
 
-layout(set = 1, binding = 3, std430) writeonly buffer Picture { float picture[]; }; // colours, then normals, then depths
-layout(set = 1, binding = 3, std430) writeonly buffer PictureColours { vec4 picture_colours[]; };
+#include "lib/output_images.glsl"
 
-layout(constant_id = 9) const bool OUT_NORMAL = false;
-layout(constant_id = 10) const bool OUT_DEPTH = false;
-
-// Writes pixel i.
-void store_pixel(uint i, Pixel pixel) {
-    uint pixels = uint(frame.viewport.x) * uint(frame.viewport.y);
-    picture_colours[i] = pixel.image;
-    if (OUT_NORMAL) for (uint k = 0; k < 3; k++) picture[4 * pixels + 3 * i + k] = pixel.normal[k];
-    if (OUT_DEPTH) picture[(OUT_NORMAL ? 7 : 4) * pixels + i] = pixel.depth;
+void store_pixel(ivec2 coordinates, Pixel pixel) {
+    store_outputs(coordinates, pixel.image, pixel.normal, pixel.depth);
 }
 
 #endif

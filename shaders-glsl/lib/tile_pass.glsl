@@ -3,6 +3,10 @@
 
 #ifdef COMPUTE
 #define TILE_PASS
+#ifdef SUBGROUPS_SLICES
+#define SUBGROUPS
+#define SLICES
+#endif
 #ifdef SUBGROUPS
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_shuffle : require

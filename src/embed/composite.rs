@@ -13,15 +13,13 @@ use std::sync::Arc;
 /// Variant of a composite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CompositeKind {
-    /// Whether the picture is in images; otherwise it is in a buffer.
-    pub images: bool,
     /// Whether the projection is perspective.
     pub perspective: bool,
     /// Colour location of the picture.
     pub picture: u32,
     /// Colour location of normals.
     pub normal: Option<u32>,
-    /// Colour location of point ids, which only pictures in buffers have.
+    /// Colour location of point ids.
     pub id: Option<u32>,
     /// Whether the host's depth is reversed; `None` without depth.
     pub reversed: Option<bool>,
@@ -38,12 +36,11 @@ pub struct Composite {
 impl CompositeKind {
     /// Resources of a frame's targets that the shader reads.
     fn resources(&self) -> Vec<(&'static shaders::Resource, Resource)> {
-        if !self.images {
-            return vec![(&resource::FRAME_PICTURE, Resource::Picture)];
-        }
         let normal = self.normal.map(|_| (&resource::NORMAL_IMAGE, Resource::Normal));
         let depth = self.reversed.map(|_| (&resource::DEPTH_IMAGE, Resource::Depth));
-        [Some((&resource::PICTURE_IMAGE, Resource::Image)), normal, depth].into_iter().flatten().collect()
+        let id = self.id.map(|_| (&resource::ID_IMAGE, Resource::Id));
+        let image = Some((&resource::PICTURE_IMAGE, Resource::Image));
+        [image, normal, depth, id].into_iter().flatten().collect()
     }
 }
 
@@ -51,13 +48,11 @@ impl Composite {
     /// Creates the pass for the host's pass `within`.
     pub fn new(device: &Arc<Device>, kind: CompositeKind, within: &Within) -> Result<Self> {
         let layout = SetLayout::of(device, kind.resources().into_iter().map(|(resource, _)| resource))?;
-        let fragment = match (kind.images, kind.normal, kind.id) {
-            (true, None, _) => &shaders::COMPOSITE_IMAGES_FRAGMENT,
-            (true, Some(_), _) => &shaders::COMPOSITE_IMAGES_NORMALS_FRAGMENT,
-            (false, None, None) => &shaders::COMPOSITE_FRAGMENT,
-            (false, Some(_), None) => &shaders::COMPOSITE_NORMALS_FRAGMENT,
-            (false, None, Some(_)) => &shaders::COMPOSITE_IDS_FRAGMENT,
-            (false, Some(_), Some(_)) => &shaders::COMPOSITE_NORMALS_IDS_FRAGMENT,
+        let fragment = match (kind.normal, kind.id) {
+            (None, None) => &shaders::COMPOSITE_FRAGMENT,
+            (Some(_), None) => &shaders::COMPOSITE_NORMALS_FRAGMENT,
+            (None, Some(_)) => &shaders::COMPOSITE_IDS_FRAGMENT,
+            (Some(_), Some(_)) => &shaders::COMPOSITE_NORMALS_IDS_FRAGMENT,
         };
         let places = [Some(kind.picture), kind.normal, kind.id];
         let fragment = Code::from(fragment).at_locations(places.map(Option::unwrap_or_default));
@@ -73,10 +68,7 @@ impl Composite {
 
     /// Descriptor set of a picture, which must outlive it.
     pub fn view(&self, device: &Arc<Device>, targets: &RenderTargets) -> Result<DescriptorSet> {
-        let binding = |(resource, target)| {
-            let image = targets.image(target).map(Binding::Sampled);
-            Some((resource, image.or_else(|| targets.buffer(target).map(Binding::whole))?))
-        };
+        let binding = |(resource, target)| Some((resource, targets.image(target).map(Binding::Sampled)?));
         let bindings: Vec<_> = self.kind.resources().into_iter().filter_map(binding).collect();
         DescriptorSet::new(device, &bindings)
     }
@@ -84,8 +76,7 @@ impl Composite {
     /// Accesses of the pass.
     pub fn reads(targets: &RenderTargets) -> Vec<Use> {
         let read = Access::of_shader(ash::vk::ShaderStageFlags::FRAGMENT, false);
-        let picture = targets.buffer(Resource::Picture).map(|buffer| buffer.with(read));
-        picture.into_iter().chain(targets.outputs().map(|image| image.with(read.of_image()))).collect()
+        targets.outputs().map(|image| image.with(read.of_image())).collect()
     }
 
     /// The variant.

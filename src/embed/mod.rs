@@ -301,7 +301,7 @@ impl Renderer {
         self.deferred.keep_scenes(&scenes);
         let composite = self.composite(&variant)?;
         self.view(composite)?;
-        let place = layout::Composite { origin: [area.offset.x, area.offset.y], size, depth };
+        let place = layout::Composite { depth, origin: [area.offset.x, area.offset.y] };
         Ok((blocks, PreparedDraw { place, area }))
     }
 
@@ -328,7 +328,6 @@ impl Renderer {
 
     fn composite(&mut self, variant: &Variant) -> Result<Arc<Composite>> {
         let kind = CompositeKind {
-            images: variant.rasterizer == Rasterizer::Draw && variant.pull_push.is_none(),
             perspective: variant.perspective,
             picture: self.target.picture,
             normal: self.target.normal,

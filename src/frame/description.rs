@@ -1,7 +1,7 @@
 //! What a frame is: decided from scenes, camera and settings, before anything is made.
 
 use super::crowding::crowded;
-use super::rasterizer::{rasterizer_of, width_of_sums};
+use super::rasterizer::{Fit, rasterizer_of, width_of_sums};
 use super::renderer::RenderOptions;
 use super::splat_list::{room_of_frame, team_of};
 use super::uniforms::Blocks;
@@ -37,7 +37,8 @@ pub fn describe(
     let blocks = Blocks::new(camera, settings, options.size, scenes)?;
     let team = team_of(device, room_of_frame(device, scenes));
     let crowded = crowded(scenes, camera, options.size);
-    let rasterizer = rasterizer_of(device, options, settings, scenes, team.is_some())?;
+    let fit = Fit::new(device, options, team.is_some(), crowded);
+    let rasterizer = rasterizer_of(device, options, settings, scenes, fit)?;
     let perspective = camera.projection()?.perspective;
     let precision = match settings.pull_push {
         Some(_) => options.precision,

@@ -3,7 +3,7 @@
 use super::recording::grid_over;
 use super::renderer::RenderOptions;
 use super::resource::Resource;
-use super::targets::{PerPixel, TargetInfo, picture_floats};
+use super::targets::{PerPixel, TargetInfo};
 use super::variant::Variant;
 use crate::error::Result;
 use crate::settings::Precision;
@@ -188,8 +188,7 @@ impl Pyramids {
             Precision::Half => compact(true),
         };
         let plane = samples(size) * formats.map(pixel_bytes).into_iter().max().unwrap_or(0);
-        let picture = 4 * picture_floats(options.outputs) * level_pixels(size, 0);
-        plane.max(picture) <= capabilities.max_storage_buffer_range
+        plane <= capabilities.max_storage_buffer_range
     }
 
     /// The largest picture of about that shape whose pyramids fit; 1×1 if none does.

@@ -2,7 +2,7 @@
 
 use super::pyramids::Pyramids;
 use super::renderer::RenderOptions;
-use super::targets::{coverage_fits, picture_fits};
+use super::targets::{coverage_fits, stage_targets_fit};
 use crate::error::{Error, Result};
 use crate::scene::instance::Placed;
 use crate::settings::{Alpha, Settings};
@@ -17,22 +17,41 @@ pub(crate) fn width_of_sums(device: &Device, options: &RenderOptions, rasterizer
 
 /// [`width_of_sums`] where it is not known yet what is rendered.
 pub(crate) fn width_of_blended_sums(device: &Device, options: &RenderOptions) -> Precision {
-    let rasterizer = rasterizer_for(device, options, Alpha::Mask, true);
+    let rasterizer = rasterizer_for(device, options, Alpha::Mask, Fit::ALL);
     rasterizer.map_or(options.precision, |rasterizer| width_of_sums(device, options, rasterizer))
 }
 
-/// What visits the pixels of a frame of these settings: what is asked for, or what is faster on `device`. `splats_fit`: the splats of all scenes fit
-/// the buffers that shaders over tiles see.
+/// What of a frame by the compute path fits the buffers that shaders of the device can see.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Fit {
+    /// The splats of all scenes.
+    pub splats: bool,
+    /// The targets between passes, if the frame has such.
+    pub targets: bool,
+}
+
+impl Fit {
+    /// Everything fits.
+    pub const ALL: Self = Self { splats: true, targets: true };
+
+    /// Of a frame of these options, whose stages are passes of their own if it is `crowded`.
+    pub fn new(device: &Device, options: &RenderOptions, splats: bool, crowded: bool) -> Self {
+        let has_targets = options.split || crowded;
+        Self { splats, targets: !has_targets || stage_targets_fit(device.capabilities(), options.size) }
+    }
+}
+
+/// The rasterizer of a frame with these settings: the requested one, or the faster one on `device`.
 pub(crate) fn rasterizer_of(
     device: &Device,
     options: &RenderOptions,
     settings: &Settings,
     scenes: &[Placed<'_>],
-    splats_fit: bool,
+    fit: Fit,
 ) -> Result<Rasterizer> {
     match settings.pull_push {
         Some(_) => rasterizer_of_points(device, options, scenes),
-        None => rasterizer_for(device, options, settings.alpha, splats_fit),
+        None => rasterizer_for(device, options, settings.alpha, fit),
     }
 }
 
@@ -90,19 +109,20 @@ pub(crate) fn rasterizer_for(
     device: &Device,
     options: &RenderOptions,
     alpha: Alpha,
-    splats_fit: bool,
+    fit: Fit,
 ) -> Result<Rasterizer> {
     let capabilities = device.capabilities();
-    let fits = picture_fits(capabilities, options.outputs, options.size);
-    let can_compute = options.precision == Precision::Full && fits && splats_fit;
+    let can_compute = options.precision == Precision::Full && fit == Fit::ALL;
     let covers = capabilities.fragment_writes && coverage_fits(capabilities, options.size);
     let can_draw = alpha == Alpha::Mask || covers;
     match options.rasterizer {
         Some(Rasterizer::Compute) if !can_compute => {
             let (name, most) = (&device.description().name, capabilities.max_storage_buffer_range);
-            let cause = match (fits, splats_fit) {
+            let cause = match (fit.targets, fit.splats) {
                 (false, _) => {
-                    format!("a picture within the {most} bytes of a buffer that shaders of {name} see")
+                    format!(
+                        "weighted sums within the {most} bytes of a buffer that shaders of {name} see, as its stages are passes of their own"
+                    )
                 }
                 (_, false) => format!(
                     "the splats of all scenes within a buffer that shaders of {name} see: {most} bytes, or {} texels",

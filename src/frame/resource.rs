@@ -33,15 +33,14 @@ pub enum Resource {
     Pulled,
     /// The pyramid with the level 0 that shade reads.
     Pushed,
-    /// The picture that compute shaders write: all pixels' colour (4 floats), then all normals (3), then all depths (1), then all numbers of
-    /// points (1, a word), as far as they are asked for.
-    Picture,
-    /// The picture that is drawn, linear.
+    /// Linear colour and α, or the quantity that is shaded.
     Image,
-    /// Unit normals beside it, where they are asked for.
+    /// Unit normals, if requested.
     Normal,
-    /// Eye-space depth beside it, where it is asked for.
+    /// Eye-space depth, if requested.
     Depth,
+    /// Ids of the visible points, if requested.
+    Id,
     /// The depth of a host's surfaces.
     HostDepth,
 }
@@ -65,10 +64,10 @@ impl Resource {
             Self::NearestNumber => "nearest_number",
             Self::Pulled => "pulled",
             Self::Pushed => "pushed",
-            Self::Picture => "picture",
             Self::Image => "image",
             Self::Normal => "normal",
             Self::Depth => "depth",
+            Self::Id => "id",
             Self::HostDepth => "host depth",
         }
     }

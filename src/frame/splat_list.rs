@@ -51,6 +51,7 @@ struct Texels {
     splats: TexelView,
     boxes: TexelView,
     attributes: TexelView,
+    clips: Option<TexelView>,
 }
 
 /// What a list has room for, or where a scene's share of it begins.
@@ -95,11 +96,13 @@ impl SplatList {
         let splats = buffer("splats", SPLAT * room.splats)?;
         let boxes = buffer("boxes", BOX * boxes)?;
         let attributes = buffer("attributes", ATTRIBUTE_ROW * rows * room.splats)?;
+        let clips = variant.clips.then(clips).transpose()?;
         let texels = || -> Result<Texels> {
             Ok(Texels {
                 splats: TexelView::new(&splats)?,
                 boxes: TexelView::new(&boxes)?,
                 attributes: TexelView::new(&attributes)?,
+                clips: clips.as_ref().map(TexelView::new).transpose()?,
             })
         };
         Ok(Self {
@@ -107,7 +110,7 @@ impl SplatList {
             splats,
             boxes,
             attributes,
-            clips: variant.clips.then(clips).transpose()?,
+            clips,
             rows,
             room,
             levels,
@@ -132,11 +135,11 @@ impl SplatList {
 
     /// What passes over tiles see of it in frames of `variant`.
     pub fn bindings(&self, variant: &Variant) -> Vec<(&'static shaders::Resource, Binding<'_>)> {
-        let clips = self.clips.as_ref().filter(|_| variant.clips);
-        let clips = clips.map(|buffer| (&resource::FRAME_CLIPS, Binding::whole(buffer)));
-        let mut list: Vec<_> = clips.into_iter().collect();
+        let mut list = Vec::new();
         match &self.texels {
             Some(texels) => {
+                let clips = texels.clips.as_ref().filter(|_| variant.clips);
+                list.extend(clips.map(|clips| (&resource::CLIP_TEXELS, Binding::Texels(clips))));
                 list.push((&resource::BOX_TEXELS, Binding::Texels(&texels.boxes)));
                 list.push((&resource::SPLAT_TEXELS, Binding::Texels(&texels.splats)));
                 list.push((&resource::ATTRIBUTE_TEXELS, Binding::Texels(&texels.attributes)));
@@ -148,6 +151,8 @@ impl SplatList {
                 ));
             }
             None => {
+                let clips = self.clips.as_ref().filter(|_| variant.clips);
+                list.extend(clips.map(|clips| (&resource::FRAME_CLIPS, Binding::whole(clips))));
                 list.push((&resource::BOXES, Binding::whole(&self.boxes)));
                 list.push((&resource::FRAME_SPLATS, Binding::whole(&self.splats)));
                 list.push((&resource::FRAME_ATTRIBUTES, Binding::whole(&self.attributes)));

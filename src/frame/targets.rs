@@ -86,7 +86,7 @@ impl Resource {
             Self::Attributes => {
                 &[&resource::SPLAT_ATTRIBUTES, &resource::FRAME_ATTRIBUTES, &resource::ATTRIBUTE_TEXELS]
             }
-            Self::ScreenClips => &[&resource::SCREEN_CLIPS, &resource::FRAME_CLIPS],
+            Self::ScreenClips => &[&resource::SCREEN_CLIPS, &resource::FRAME_CLIPS, &resource::CLIP_TEXELS],
             Self::Counts => &[&resource::COUNTS],
             Self::LargeTriangles => &[&resource::LARGE_TRIANGLES],
             Self::Visibility => {
@@ -100,9 +100,11 @@ impl Resource {
             Self::NearestNumber => &[&resource::NEAREST_ID],
             Self::Pulled => &[&resource::TO_DEPTHS],
             Self::Pushed => &[&resource::FINAL_DEPTHS],
-            Self::Picture => &[&resource::PICTURE, &resource::PICTURE_COLOURS],
             Self::HostDepth => &[&resource::HOST_DEPTH],
-            Self::Image | Self::Normal | Self::Depth => &[],
+            Self::Image => &[&resource::IMAGE_OUTPUT],
+            Self::Normal => &[&resource::NORMAL_OUTPUT],
+            Self::Depth => &[&resource::DEPTH_OUTPUT],
+            Self::Id => &[&resource::ID_OUTPUT],
         };
         known.contains(&shader)
     }
@@ -150,13 +152,16 @@ fn coverage(variant: &Variant) -> Option<Description> {
     variant.coverage.then_some(coverage)
 }
 
-fn picture(outputs: Outputs) -> Description {
-    pixels(Resource::Picture, Format::R32_SFLOAT, 4 * picture_floats(outputs), &resource::PICTURE)
-}
-
-/// Floats of a pixel of a picture in a buffer.
-pub fn picture_floats(outputs: Outputs) -> u64 {
-    4 + 3 * u64::from(outputs.normal) + u64::from(outputs.depth) + u64::from(outputs.id)
+/// The images that compute shaders write.
+fn stored_outputs(outputs: Outputs) -> [Option<Description>; 4] {
+    let output = |resource, format, shader| image(resource, format, ImageUse::StoredOutput, Some(shader));
+    let colour = Format::R32G32B32A32_SFLOAT;
+    [
+        Some(output(Resource::Image, colour, &resource::IMAGE_OUTPUT)),
+        outputs.normal.then(|| output(Resource::Normal, colour, &resource::NORMAL_OUTPUT)),
+        outputs.depth.then(|| output(Resource::Depth, Format::R32_SFLOAT, &resource::DEPTH_OUTPUT)),
+        outputs.id.then(|| output(Resource::Id, Format::R32_UINT, &resource::ID_OUTPUT)),
+    ]
 }
 
 fn drawn(variant: &Variant) -> Vec<Option<Description>> {
@@ -176,26 +181,27 @@ fn drawn(variant: &Variant) -> Vec<Option<Description>> {
 }
 
 fn computed(variant: &Variant) -> Vec<Option<Description>> {
+    let outputs = stored_outputs(variant.outputs).into_iter();
     if !variant.split && !variant.sliced {
-        return vec![Some(picture(variant.outputs))];
+        return outputs.collect();
     }
     let visibility = pixels(Resource::Visibility, Format::R32_UINT, 4, &resource::VISIBILITY);
     if variant.visibility == Visibility::Nearest {
         // What the dispatches of the nearest pass leave each other: depths and numbers of splats.
         let winners = pixels(Resource::Sums0, Format::R32_UINT, 4, &resource::SUMS0);
-        return vec![Some(visibility), Some(winners), coverage(variant), Some(picture(variant.outputs))];
+        return [Some(visibility), Some(winners), coverage(variant)].into_iter().chain(outputs).collect();
     }
     let sums = |resource, wide: bool, shader| {
         let format = sums_format(Precision::Full, wide);
         pixels(resource, format, pixel_bytes(format), shader)
     };
-    vec![
+    let stages = [
         Some(visibility),
         Some(sums(Resource::Sums0, variant.wide_sums0(), &resource::SUMS0)),
         variant.has_sums1().then(|| sums(Resource::Sums1, variant.wide_sums1(), &resource::SUMS1)),
         coverage(variant),
-        Some(picture(variant.outputs)),
-    ]
+    ];
+    stages.into_iter().chain(outputs).collect()
 }
 
 fn of_points(variant: &Variant) -> Vec<Option<Description>> {
@@ -203,12 +209,12 @@ fn of_points(variant: &Variant) -> Vec<Option<Description>> {
         variant.draws_points().then(|| image(resource, format, ImageUse::Sampled, Some(shader)))
     };
     let nearest = pixels(Resource::Nearest, Format::R64_UINT, 8, &resource::NEAREST);
-    vec![
+    let points = [
         variant.computes_points().then_some(nearest),
         drawn(Resource::NearestDepth, Format::D32_SFLOAT, &resource::NEAREST_DEPTH),
         drawn(Resource::NearestNumber, Format::R32_UINT, &resource::NEAREST_ID),
-        Some(picture(variant.outputs)),
-    ]
+    ];
+    points.into_iter().chain(stored_outputs(variant.outputs)).collect()
 }
 
 /// What shaders see of the targets of a frame: descriptor set 1.
@@ -220,12 +226,15 @@ pub fn shader_resources(variant: &Variant) -> Vec<&'static shaders::Resource> {
 
 /// What passes over tiles see of the splats of a frame.
 fn splat_resources(variant: &Variant) -> Vec<&'static shaders::Resource> {
-    let clips = variant.clips.then_some(&resource::FRAME_CLIPS);
-    let (of_splats, attributes) = match variant.team.subgroups {
-        true => (&[&resource::BOX_TEXELS, &resource::SPLAT_TEXELS][..], &resource::ATTRIBUTE_TEXELS),
-        false => (&[&resource::FRAME_SPLATS][..], &resource::FRAME_ATTRIBUTES),
+    let (of_splats, clips) = match variant.team.subgroups {
+        true => (
+            &[&resource::BOX_TEXELS, &resource::SPLAT_TEXELS, &resource::ATTRIBUTE_TEXELS][..],
+            &resource::CLIP_TEXELS,
+        ),
+        false => (&[&resource::FRAME_SPLATS, &resource::FRAME_ATTRIBUTES][..], &resource::FRAME_CLIPS),
     };
-    of_splats.iter().copied().chain([&resource::BOXES, attributes]).chain(clips).collect()
+    let clips = variant.clips.then_some(clips);
+    of_splats.iter().copied().chain([&resource::BOXES]).chain(clips).collect()
 }
 
 /// What the targets of a frame take.
@@ -248,10 +257,9 @@ pub fn coverage_fits(capabilities: &Capabilities, size: [u32; 2]) -> bool {
     COVERAGE * pixels_of(size) <= capabilities.max_storage_buffer_range
 }
 
-/// Whether a picture of this size fits the buffers that shaders of the device can see.
-pub fn picture_fits(capabilities: &Capabilities, outputs: Outputs, size: [u32; 2]) -> bool {
-    // Of all targets of splats that are computed, the picture has the largest pixels.
-    4 * picture_floats(outputs) * pixels_of(size) <= capabilities.max_storage_buffer_range
+/// Whether the targets between compute passes, which split and sliced frames have, fit the buffers that shaders of the device can see.
+pub fn stage_targets_fit(capabilities: &Capabilities, size: [u32; 2]) -> bool {
+    pixel_bytes(sums_format(Precision::Full, true)) * pixels_of(size) <= capabilities.max_storage_buffer_range
 }
 
 /// Number of pixels.
@@ -304,9 +312,10 @@ impl RenderTargets {
 
     fn bindings(&self) -> impl Iterator<Item = (&'static shaders::Resource, Binding<'_>)> {
         self.list.iter().filter_map(|(target, memory)| {
-            let binding = match memory {
-                Memory::Image(image) => Binding::Sampled(image),
-                Memory::Buffer(buffer) => Binding::whole(buffer),
+            let binding = match (memory, target.kind) {
+                (Memory::Image(image), Kind::Image(ImageUse::StoredOutput)) => Binding::Stored(image),
+                (Memory::Image(image), _) => Binding::Sampled(image),
+                (Memory::Buffer(buffer), _) => Binding::whole(buffer),
             };
             Some((target.shader?, binding))
         })
@@ -365,9 +374,9 @@ impl RenderTargets {
         }
     }
 
-    /// The images that are read on the CPU, where the picture is drawn.
+    /// The images that are read on the CPU.
     pub fn outputs(&self) -> impl Iterator<Item = &Image> {
-        [Resource::Image, Resource::Normal, Resource::Depth]
+        [Resource::Image, Resource::Normal, Resource::Depth, Resource::Id]
             .into_iter()
             .filter_map(|output| self.image(output))
     }

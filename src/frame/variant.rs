@@ -274,7 +274,6 @@ impl Variant {
             .with(constant::TEXELS, self.texture.map_or(0, |texels| texels as u32))
             .with(constant::MATERIALS, self.materials)
             .with(constant::IDS, self.has_ids())
-            .with(constant::OUT_ID, self.outputs.id)
             .with(constant::FOOTPRINT, self.footprint as u32)
             .with(constant::CONFETTI, self.confetti)
             .with(constant::NORMALIZATION, self.normalization as u32)

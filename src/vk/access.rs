@@ -119,9 +119,10 @@ impl Access {
         Self::buffer(stages, vk::AccessFlags::SHADER_READ | written, write)
     }
 
-    /// The same access to an image, if it is one of a buffer: shaders fetch from images.
+    /// The same access to an image, if it is one of a buffer: shaders fetch from images, or store to them.
     pub fn of_image(self) -> Self {
         match self.layout {
+            vk::ImageLayout::UNDEFINED if self.write => Self { layout: vk::ImageLayout::GENERAL, ..self },
             vk::ImageLayout::UNDEFINED => Self { layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL, ..self },
             _ => self,
         }

@@ -6,10 +6,11 @@ use ash::vk;
 use std::sync::{Mutex, MutexGuard};
 
 /// Descriptor types, with the average number of each per set of a pool.
-const KINDS: [(vk::DescriptorType, u32); 5] = [
+const KINDS: [(vk::DescriptorType, u32); 6] = [
     (vk::DescriptorType::UNIFORM_BUFFER, 1),
     (vk::DescriptorType::STORAGE_BUFFER, 11),
     (vk::DescriptorType::SAMPLED_IMAGE, 3),
+    (vk::DescriptorType::STORAGE_IMAGE, 4),
     (vk::DescriptorType::INPUT_ATTACHMENT, 4),
     (vk::DescriptorType::UNIFORM_TEXEL_BUFFER, 2),
 ];
@@ -187,7 +188,7 @@ mod tests {
         use vk::DescriptorType as Kind;
         let all = Room::of_pool(2);
         let set = Room::of_set(&[Kind::UNIFORM_BUFFER, Kind::STORAGE_BUFFER, Kind::STORAGE_BUFFER]);
-        assert_eq!(set, Room { sets: 1, descriptors: [1, 2, 0, 0, 0] });
+        assert_eq!(set, Room { sets: 1, descriptors: [1, 2, 0, 0, 0, 0] });
         let one = all.without(set).unwrap();
         assert_eq!(one.with(set), all);
         assert_eq!(one.without(set).unwrap().without(set), None);

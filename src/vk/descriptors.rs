@@ -18,6 +18,8 @@ pub enum Binding<'a> {
     Texels(&'a TexelView),
     /// Sampled image.
     Sampled(&'a Image),
+    /// Storage image.
+    Stored(&'a Image),
     /// Input attachment.
     Input(&'a Image),
     /// The host's depth as input attachment.
@@ -88,6 +90,9 @@ impl DescriptorSet {
                         write.image_info(&image_info(image.view, vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL)),
                     );
                 }
+                Binding::Stored(image) => {
+                    update(write.image_info(&image_info(image.view, vk::ImageLayout::GENERAL)));
+                }
                 Binding::Input(image) => {
                     update(write.image_info(&image_info(image.view, input_layout(image.format))));
                 }
@@ -107,6 +112,7 @@ impl Binding<'_> {
             Self::Storage(..) => vk::DescriptorType::STORAGE_BUFFER,
             Self::Texels(_) => vk::DescriptorType::UNIFORM_TEXEL_BUFFER,
             Self::Sampled(_) => vk::DescriptorType::SAMPLED_IMAGE,
+            Self::Stored(_) => vk::DescriptorType::STORAGE_IMAGE,
             Self::Input(_) | Self::HostDepth(_) => vk::DescriptorType::INPUT_ATTACHMENT,
         }
     }

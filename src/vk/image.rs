@@ -16,8 +16,10 @@ pub enum ImageUse {
     /// Offscreen replacement of a window's image: copied to, drawn over, and copied to the CPU.
     #[cfg(feature = "window")]
     Window,
-    /// The result of a frame: copied to the CPU, or drawn over a host's target.
+    /// The result of a frame that is drawn: copied to the CPU, or drawn over a host's target.
     Output,
+    /// The result of a frame that compute shaders write: copied to the CPU, or drawn over a host's target.
+    StoredOutput,
 }
 
 /// A two-dimensional render target with its memory and view.
@@ -51,7 +53,9 @@ impl Image {
         size: [u32; 2],
         also: ImageUse,
     ) -> Result<Self> {
-        let attachment = if is_depth(format) {
+        let written = if also == ImageUse::StoredOutput {
+            vk::ImageUsageFlags::STORAGE
+        } else if is_depth(format) {
             vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT
         } else {
             vk::ImageUsageFlags::COLOR_ATTACHMENT
@@ -63,7 +67,9 @@ impl Image {
             }
             #[cfg(feature = "window")]
             ImageUse::Window => vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST,
-            ImageUse::Output => vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::SAMPLED,
+            ImageUse::Output | ImageUse::StoredOutput => {
+                vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::SAMPLED
+            }
         };
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
@@ -73,7 +79,7 @@ impl Image {
             .array_layers(1)
             .samples(vk::SampleCountFlags::TYPE_1)
             .tiling(vk::ImageTiling::OPTIMAL)
-            .usage(attachment | other);
+            .usage(written | other);
         // SAFETY: `info` is valid; the image is destroyed in `drop`.
         let raw = unsafe { device.raw.create_image(&info, None) }.map_err(Error::vulkan("vkCreateImage"))?;
         let mut image =

@@ -56,12 +56,12 @@ fn the_report_has_everything_and_adds_up() {
     let targets = report["targets"].as_array().unwrap();
     let bytes: u64 = targets.iter().map(|target| target["bytes"].as_u64().unwrap()).sum();
     assert_eq!(report["target_bytes"].as_u64(), Some(bytes));
-    assert!(targets.iter().any(|target| target["name"] == "picture"), "{report}");
+    assert!(targets.iter().any(|target| target["name"] == "image"), "{report}");
     assert!(
         targets.iter().all(|target| target["name"].is_string() && target["format"].is_string()),
         "{report}"
     );
-    // Five surfels of 28 bytes; the targets include a picture of 16 bytes per pixel.
+    // Five surfels of 28 bytes; the targets include an image of 16 bytes per pixel.
     assert!(report["scene_bytes"].as_u64() >= Some(140) && bytes >= 64 * 64 * 16, "{report}");
     for key in ["splat_bytes", "device_bytes", "pipelines", "allocations"] {
         assert!(report[key].as_u64() > Some(0), "{key}: {report}");

@@ -6,6 +6,9 @@ use rspirv::dr::{Instruction, Operand};
 use rspirv::spirv::{Decoration, Dim, Op, StorageClass};
 use std::collections::{BTreeMap, BTreeSet};
 
+/// Operand of OpTypeImage that is 2 for storage images.
+const SAMPLED: usize = 5;
+
 /// The interface of all modules together.
 #[derive(Default)]
 pub struct Interface {
@@ -346,6 +349,9 @@ impl Ids {
             (Some(image), _) if image.operands.contains(&Operand::Dim(Dim::DimBuffer)) => {
                 "UNIFORM_TEXEL_BUFFER"
             }
+            (Some(image), _) if image.operands.get(SAMPLED) == Some(&Operand::LiteralBit32(2)) => {
+                "STORAGE_IMAGE"
+            }
             (Some(_), _) => "SAMPLED_IMAGE",
             (None, Some(Operand::StorageClass(StorageClass::Uniform))) => "UNIFORM_BUFFER",
             (None, Some(Operand::StorageClass(StorageClass::StorageBuffer))) => "STORAGE_BUFFER",
@@ -361,7 +367,8 @@ impl Ids {
             kind: kind_name,
             stages: BTreeSet::from([module.stage()]),
         };
-        let writes = kind_name == "STORAGE_BUFFER" && !(0..members).all(readonly);
+        let writes =
+            kind_name == "STORAGE_IMAGE" || kind_name == "STORAGE_BUFFER" && !(0..members).all(readonly);
         Ok(Declared { name, resource, writes })
     }
 

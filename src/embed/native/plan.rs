@@ -4,7 +4,7 @@ use super::HostRenderPass;
 use super::dependencies::dependencies;
 use crate::error::{Error, Result};
 use crate::frame::RenderOptions;
-use crate::frame::rasterizer::{rasterizer_for, width_of_sums};
+use crate::frame::rasterizer::{Fit, rasterizer_for, width_of_sums};
 use crate::frame::targets::sums_format;
 use crate::frame::variant::Variant;
 use crate::scene::Streams;
@@ -367,7 +367,7 @@ fn variant(
     settings.check()?;
     settings.splatting.normalization.check_weights(streams.weights.is_some())?;
     settings.check_primitives(streams.primitives.any())?;
-    let rasterizer = rasterizer_for(device, options, settings.alpha, true)?;
+    let rasterizer = rasterizer_for(device, options, settings.alpha, Fit::ALL)?;
     let options = RenderOptions { precision: width_of_sums(device, options, rasterizer), ..*options };
     Ok(Variant::new(&[streams], true, settings, &options, rasterizer))
 }

@@ -43,7 +43,7 @@ mod tests {
     use crate::settings::Rasterizer;
     use crate::settings::methods::Method;
     use crate::settings::splatting::Visibility;
-    use crate::settings::{Alpha, Settings};
+    use crate::settings::{Alpha, Outputs, Settings};
 
     /// The passes of every method by every path, of frames that have scenes.
     fn all() -> Vec<&'static Pass> {
@@ -70,7 +70,7 @@ mod tests {
         all
     }
 
-    const RESOURCES: [Resource; 17] = [
+    const RESOURCES: [Resource; 20] = [
         Resource::Splats,
         Resource::Boxes,
         Resource::ScreenClips,
@@ -86,7 +86,10 @@ mod tests {
         Resource::NearestNumber,
         Resource::Pulled,
         Resource::Pushed,
-        Resource::Picture,
+        Resource::Image,
+        Resource::Normal,
+        Resource::Depth,
+        Resource::Id,
         Resource::HostDepth,
     ];
 
@@ -112,9 +115,11 @@ mod tests {
             {
                 for pull_push in [None, crate::settings::methods::pull_push::METHOD.pull_push] {
                     let settings = Settings { alpha, pull_push, ..Default::default() };
-                    let options = RenderOptions { count: rich, ..Default::default() };
+                    let outputs = Outputs { normal: rich, depth: rich, id: rich };
+                    let options = RenderOptions { count: rich, outputs, ..Default::default() };
                     let frame = Variant::new(&[streams], true, &settings, &options, rasterizer);
                     list.push(SceneVariant::new(frame, streams, rich));
+                    list.push(SceneVariant::new(frame.crowded(true), streams, rich));
                 }
             }
         }

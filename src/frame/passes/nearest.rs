@@ -3,11 +3,12 @@
 use super::tiles;
 use crate::frame::pass::{Commands, Over, Pass, Program, Programs, Start, Targets};
 use crate::frame::resource::Resource::{
-    Attributes, Boxes, Coverage, Picture, ScreenClips, Splats, Sums0, Sums1, Visibility,
+    Attributes, Boxes, Coverage, Depth, Image, Normal, ScreenClips, Splats, Sums0, Sums1, Visibility,
 };
 use crate::vk::shaders::{
     NEAREST_CLIP_LINES_FRAGMENT, NEAREST_CLIP_LINES_VERTEX, NEAREST_COMPUTE, NEAREST_COVERAGE_FRAGMENT,
-    NEAREST_COVERAGE_VERTEX, NEAREST_FRAGMENT, NEAREST_SUBGROUPS_COMPUTE, NEAREST_VERTEX,
+    NEAREST_COVERAGE_VERTEX, NEAREST_FRAGMENT, NEAREST_SLICES_COMPUTE, NEAREST_SUBGROUPS_COMPUTE,
+    NEAREST_SUBGROUPS_SLICES_COMPUTE, NEAREST_VERTEX,
 };
 use crate::vk::{Blend, DepthTest, Topology};
 
@@ -15,9 +16,15 @@ use crate::vk::{Blend, DepthTest, Topology};
 pub static COMPUTED: Pass = Pass {
     name: "nearest",
     reads: &[Splats, Boxes, Attributes, ScreenClips],
-    writes: &[Visibility, Sums0, Coverage, Picture],
+    writes: &[Visibility, Sums0, Coverage, Image, Normal, Depth],
     clears: &[],
-    programs: Programs::OfFrame(|variant| tiles(variant, [&NEAREST_COMPUTE, &NEAREST_SUBGROUPS_COMPUTE])),
+    programs: Programs::OfFrame(|variant| {
+        let modules = match variant.sliced {
+            false => [&NEAREST_COMPUTE, &NEAREST_SUBGROUPS_COMPUTE],
+            true => [&NEAREST_SLICES_COMPUTE, &NEAREST_SUBGROUPS_SLICES_COMPUTE],
+        };
+        tiles(variant, modules)
+    }),
     commands: Commands::Dispatches,
 };
 

@@ -1,7 +1,7 @@
 //! Normalize: weighted sums → picture, normal, depth (zwicker2004 §6, third pass; `normalize.glsl`).
 
 use crate::frame::pass::{Commands, Over, Pass, Program, Programs, Start, Targets};
-use crate::frame::resource::Resource::{Coverage, Depth, Image, Normal, Picture, Sums0, Sums1, Visibility};
+use crate::frame::resource::Resource::{Coverage, Depth, Image, Normal, Sums0, Sums1, Visibility};
 use crate::vk::shaders::{
     NORMALIZE_COMPUTE, NORMALIZE_COVERAGE_COMPUTE, NORMALIZE_COVERAGE_FRAGMENT, NORMALIZE_COVERAGE_VERTEX,
     NORMALIZE_FRAGMENT, NORMALIZE_SUBPASS_COVERAGE_FRAGMENT, NORMALIZE_SUBPASS_FRAGMENT, NORMALIZE_VERTEX,
@@ -12,7 +12,7 @@ use crate::vk::{Blend, DepthTest, Topology};
 pub static COMPUTED: Pass = Pass {
     name: "normalize",
     reads: &[Visibility, Sums0, Sums1, Coverage],
-    writes: &[Picture],
+    writes: &[Image, Normal, Depth],
     clears: &[],
     programs: Programs::OfFrame(|variant| {
         let module = match variant.coverage {

@@ -2,14 +2,14 @@
 
 use super::tiles;
 use crate::frame::pass::{Commands, Pass, Programs};
-use crate::frame::resource::Resource::{Attributes, Boxes, Picture, ScreenClips, Splats};
+use crate::frame::resource::Resource::{Attributes, Boxes, Depth, Image, Normal, ScreenClips, Splats};
 use crate::vk::shaders::{SURFACE_COMPUTE, SURFACE_SUBGROUPS_COMPUTE};
 
 /// A workgroup a tile.
 pub static SURFACE: Pass = Pass {
     name: "surface",
     reads: &[Splats, Boxes, Attributes, ScreenClips],
-    writes: &[Picture],
+    writes: &[Image, Normal, Depth],
     clears: &[],
     programs: Programs::OfFrame(|variant| tiles(variant, [&SURFACE_COMPUTE, &SURFACE_SUBGROUPS_COMPUTE])),
     commands: Commands::Dispatches,
