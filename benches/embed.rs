@@ -19,7 +19,7 @@ use surfel::embed::{self, Options, View};
 use surfel::geometry::Camera;
 use surfel::verify::scenes;
 use surfel::vk::Device;
-use surfel::{Precision, Rasterizer, Scene, Settings};
+use surfel::{Rasterizer, Scene, Settings};
 
 /// Side of the picture, px.
 const SIDE: u32 = 1024;
@@ -164,12 +164,8 @@ impl Composited {
             frame::Kind { way: Way::Subpass, colour: COLOUR, normals: false, samples: ONE, reversed: true };
         let frame = Frame::new(uploaded.host, kind, [SIDE; 2])?;
         let mesh = Mesh::new(uploaded.host, &uploaded.corners(wall), frame.mesh_target())?;
-        let options = Options {
-            target: frame.target(),
-            frames_in_flight: 1,
-            precision: Precision::Full,
-            rasterizer: Some(rasterizer),
-        };
+        let options =
+            Options { frames_in_flight: 1, rasterizer: Some(rasterizer), ..Options::new(frame.target()) };
         // SAFETY: the target belongs to the frame, which is destroyed after the renderer.
         let renderer = unsafe { embed::Renderer::new(&uploaded.device, options)? };
         Ok(Self { frame, mesh, renderer })

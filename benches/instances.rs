@@ -16,7 +16,7 @@ use surfel::embed::{self, Options, Renderer, View};
 use surfel::geometry::Surfels;
 use surfel::settings::methods::Method;
 use surfel::vk::Device;
-use surfel::{Instance, Precision, Rasterizer, Scene, Settings};
+use surfel::{Instance, Rasterizer, Scene, Settings};
 
 /// Width and height of the picture, px.
 const SIZE: [u32; 2] = [1024; 2];
@@ -139,10 +139,9 @@ impl Stand<'_> {
         rasterizer: Rasterizer,
     ) -> Result<()> {
         let options = Options {
-            target: self.frame.target(),
             frames_in_flight: 1,
-            precision: Precision::Full,
             rasterizer: Some(rasterizer),
+            ..Options::new(self.frame.target())
         };
         let mut renderers = Vec::new();
         for _ in kinds {

@@ -13,7 +13,7 @@ use std::sync::Arc;
 use surfel::embed::{self, Options, Renderer, View};
 use surfel::settings::methods::Method;
 use surfel::vk::Device;
-use surfel::{Precision, Rasterizer, Scene, Settings};
+use surfel::{Rasterizer, Scene, Settings};
 
 /// Width and height of the picture, px.
 const SIZE: [u32; 2] = [1024; 2];
@@ -70,10 +70,9 @@ impl Stand<'_> {
     /// Times of each frame's `prepare` and `draw`, ns.
     fn measure(&self, settings: &Settings, rasterizer: Rasterizer) -> Result<Vec<[u64; 2]>> {
         let options = Options {
-            target: self.frame.target(),
             frames_in_flight: 1,
-            precision: Precision::Full,
             rasterizer: Some(rasterizer),
+            ..Options::new(self.frame.target())
         };
         // SAFETY: the target belongs to the frame, which outlives the renderer.
         let mut renderer = unsafe { Renderer::new(&self.device, options)? };

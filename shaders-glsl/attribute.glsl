@@ -49,6 +49,7 @@ void main() {
     }
     visited_count = MOST_VISITED + 1;
     sum_attributes(origin);
+    report_incomplete();
     for (uint r = 0; r < ROWS; r++) {
         uvec2 pixel = origin + lane_pixel(r);
         if (is_in_viewport(pixel)) store_sums(pixel_index(ivec2(pixel)), tile_sums0[r], tile_sums1[r]);

@@ -22,6 +22,9 @@
 #ifdef COMPUTE
 
 #ifdef SLICES
+#define VISIBILITY_STEPS 31000
+#define COVERAGE_STEPS 31000
+#define COVERAGE_UNROLLED 2
 // State between the dispatches of a sliced frame: depth of each pixel, index of its splat, coverage.
 #define VISIBILITY_ACCESS
 #define SUMS_ACCESS
@@ -59,6 +62,7 @@ void main() {
 #endif
     compute_visibility(origin);
     if (COVERAGE) compute_coverage(origin);
+    report_incomplete();
 #ifdef SLICES
     for (uint r = 0; r < ROWS; r++) {
         uvec2 coordinates = origin + lane_pixel(r);

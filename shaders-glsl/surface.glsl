@@ -20,6 +20,7 @@ void main() {
     compute_visibility(origin);
     if (COVERAGE) compute_coverage(origin);
     sum_attributes(origin);
+    report_incomplete();
     for (uint r = 0; r < ROWS; r++) {
         uvec2 pixel = origin + lane_pixel(r);
         float alpha = COVERAGE ? bitCount(coverage_masks[r]) / 16.0 : 1.0;

@@ -20,6 +20,7 @@
 #define VISIBILITY_ACCESS
 #define VISIBILITY_STEPS 31000
 #define COVERAGE_STEPS 31000
+#define COVERAGE_UNROLLED 2
 #include "lib/pixels.glsl"
 #include "lib/tile.glsl"
 #include "lib/tile_visibility.glsl"
@@ -38,6 +39,7 @@ void main() {
     }
     compute_visibility(origin);
     if (COVERAGE) compute_coverage(origin);
+    report_incomplete();
     for (uint r = 0; r < ROWS; r++) {
         uvec2 pixel = origin + lane_pixel(r);
         if (!is_in_viewport(pixel)) continue;

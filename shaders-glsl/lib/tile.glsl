@@ -14,6 +14,8 @@ layout(push_constant) uniform Hierarchy {
     uint group;
     uint slice;
     uint slices;
+    uint most_steps; // of a walk
+    uint frame_number;
 } hierarchy;
 
 layout(constant_id = 47) const bool SLICED = false;
@@ -189,8 +191,18 @@ uint compact(uint value, uint mask) {
 }
 
 // lavapipe stops all loops of an invocation after 65,535 iterations in total (LP_MAX_TGSI_LOOP_ITERATIONS), which would leave holes: each
-// walk stops earlier, after its result share. A walk visits some 30,000 visible splats per tile and dispatch; frames that may have more are
+// walk stops earlier, after its share. A walk visits some 30,000 visible splats per tile and dispatch; frames that may have more are
 // SLICED.
+
+// Whether a walk stopped before it had visited all splats.
+bool incomplete = false;
+
+layout(set = 1, binding = 4, std430) writeonly buffer IncompleteFrame { uint incomplete_frame; };
+
+// Writes the number of the frame if the tile lacks splats.
+void report_incomplete() {
+    if (incomplete && lane == 0) incomplete_frame = hierarchy.frame_number;
+}
 
 // Splats of a batch that are rasterized by unrolled code; a divisor of the least LANES.
 const uint UNROLLED = 2;

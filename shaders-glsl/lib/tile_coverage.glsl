@@ -6,6 +6,11 @@ layout(constant_id = 31) const bool COVERAGE = false; // α is the covered part 
 
 uint coverage_masks[ROWS];
 
+// As UNROLLED: 2 is slower than 1 but takes half the iterations.
+#ifndef COVERAGE_UNROLLED
+#define COVERAGE_UNROLLED 1
+#endif
+
 // κ below which splats are skipped: 0 while samples of visible pixels are uncovered.
 float coverage_cull_key;
 
@@ -37,6 +42,17 @@ uint mask_on_tile(TileSplat solid, vec2 offset, vec2 d) {
     return owns ? 1u << nearest_sample(-e) : mask;
 }
 
+// Adds the samples that a splat covers, if `is_splat`.
+void add_coverage(TileSplat splat, TileSplat solid, vec2 offset, bool is_splat) {
+    for (uint r = 0; r < ROWS; r++) {
+        vec2 m, d = vec2(lane_pixel(r));
+        float key, rank;
+        bool has_fragment = tile_fragment(splat, d, m, key, rank) && is_splat;
+        uint mask = mask_on_tile(solid, offset, d);
+        coverage_masks[r] |= has_fragment ? mask : 0;
+    }
+}
+
 void add_coverage_batch(uint count, uint id, uvec2 origin) {
     Splat splat = splat_of(id);
     vec2 centre = vec2(origin) + 0.5, variance = variance_of(splat);
@@ -46,15 +62,13 @@ void add_coverage_batch(uint count, uint id, uvec2 origin) {
     uint s = 0;
     do {
         TileSplat current = shuffle(lane_splat, s), solid = shuffle(lane_solid, s);
-        vec2 offset = shuffle(lane_offset, s);
-        for (uint r = 0; r < ROWS; r++) {
-            vec2 m, d = vec2(lane_pixel(r));
-            float key, rank;
-            bool has_fragment = tile_fragment(current, d, m, key, rank) && s < count;
-            uint mask = mask_on_tile(solid, offset, d);
-            coverage_masks[r] |= has_fragment ? mask : 0;
-        }
-        s++;
+        add_coverage(current, solid, shuffle(lane_offset, s), s < count);
+#if COVERAGE_UNROLLED == 2
+        current = shuffle(lane_splat, s + 1);
+        solid = shuffle(lane_solid, s + 1);
+        add_coverage(current, solid, shuffle(lane_offset, s + 1), s + 1 < count);
+#endif
+        s += COVERAGE_UNROLLED;
     } while (s < count);
     update_coverage_cull_key();
 }
@@ -64,6 +78,7 @@ void add_coverage_batch(uint count, uint id, uvec2 origin) {
 #define COVERAGE_STEPS 12000
 #endif
 #define WALK_STEPS COVERAGE_STEPS
+#define WALK_UNROLLED COVERAGE_UNROLLED
 #define WALK_CULL_KEY coverage_cull_key
 #define WALK_BATCH(count, id) add_coverage_batch(count, id, origin)
 #include "lib/walk.glsl"

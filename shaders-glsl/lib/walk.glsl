@@ -3,10 +3,15 @@
 //   WALK_STEPS: the number of loop iterations after which it stops;
 //   WALK_CULL_KEY: inverse depth (κ) of the farthest visible surface; boxes behind it are skipped. It may rise during the walk;
 //   WALK_BATCH(count, id): processes a batch of `count` splats, at most LANES; each lane has the `id` of one;
+//   WALK_UNROLLED: optional; splats of a batch that one loop iteration processes, UNROLLED if undefined;
 //   WALK_RECORD: optional; records the visited splats in visited_ids.
 // Blocks of 512 splats are visited near to far, splats within a block by index.
 //
 // Loops are `do … while`, and values are selected instead of branched on: lavapipe only masks branches.
+
+#ifndef WALK_UNROLLED
+#define WALK_UNROLLED UNROLLED
+#endif
 
 void WALK(uvec2 origin, uvec2 last) {
     // Open groups of siblings, per level from blocks up: a bit per remaining sibling, in order, and the order of siblings.
@@ -24,7 +29,7 @@ void WALK(uvec2 origin, uvec2 last) {
     }
     // Splats of an incomplete batch: the first LANES, and the rest.
     uint low_pending = 0, high_pending = 0, pending_count = 0;
-    int steps_left = WALK_STEPS;
+    int steps_left = min(WALK_STEPS, int(hierarchy.most_steps));
     bool more = true;
     do {
         // Finds the next block.
@@ -96,13 +101,15 @@ void WALK(uvec2 origin, uvec2 last) {
             WALK_BATCH(count, id);
             low_pending = high_pending;
             pending_count -= count;
-            steps_left -= int(LANES / UNROLLED) + 1;
+            steps_left -= int(LANES / WALK_UNROLLED) + 1;
         } while ((open_nodes != 0 || pending_count > 0) && steps_left > 0);
     } while (more && steps_left > 0);
+    incomplete = incomplete || steps_left <= 0;
 }
 
 #undef WALK
 #undef WALK_CULL_KEY
 #undef WALK_BATCH
 #undef WALK_STEPS
+#undef WALK_UNROLLED
 #undef WALK_RECORD

@@ -35,8 +35,7 @@ fn render_options(task: &Task<'_>, backend: &Backend, profile: bool) -> RenderOp
         precision: if backend.half { Precision::Half } else { Precision::Full },
         rasterizer: backend.rasterizer,
         profile,
-        count: false,
-        split: false,
+        ..Default::default()
     }
 }
 

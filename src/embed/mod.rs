@@ -67,7 +67,7 @@
 //!         id: None,
 //!         encode: false,
 //!     };
-//!     let options = Options { target, frames_in_flight: 2, precision: Precision::Full, rasterizer: None };
+//!     let options = Options { frames_in_flight: 2, ..Options::new(target) };
 //!     Ok((Arc::new(scene), staging, unsafe { Renderer::new(&device, options)? }))
 //! }
 //!
@@ -136,6 +136,15 @@ pub struct Options {
     pub precision: Precision,
     /// See [`RenderOptions::rasterizer`].
     pub rasterizer: Option<Rasterizer>,
+    /// See [`RenderOptions::most_splats`].
+    pub most_splats: Option<u32>,
+}
+
+impl Options {
+    /// Two frames in flight, full precision, the faster rasterizer, no bound on the work of a frame.
+    pub fn new(target: Target) -> Self {
+        Self { target, frames_in_flight: 2, precision: Precision::Full, rasterizer: None, most_splats: None }
+    }
 }
 
 /// Renders scenes into frames of a host.
@@ -172,14 +181,16 @@ impl Renderer {
     /// `options.target` describes the render pass correctly. The pass outlives the renderer, because pipelines are cached by its handle.
     /// The renderer is dropped only after the GPU has executed all that it recorded.
     pub unsafe fn new(device: &Arc<Device>, options: Options) -> Result<Self> {
-        let Options { target, frames_in_flight, precision, rasterizer } = options;
+        let Options { target, frames_in_flight, precision, rasterizer, most_splats } = options;
         target.check(device)?;
         let outputs = Outputs {
             normal: target.normal.is_some(),
             depth: target.depth.is_some(),
             id: target.id.is_some(),
         };
-        let options = RenderOptions { size: [1, 1], outputs, precision, rasterizer, ..Default::default() };
+        let size = [1, 1];
+        let options =
+            RenderOptions { size, outputs, precision, rasterizer, most_splats, ..Default::default() };
         Ok(Self {
             viewed: None,
             pending: None,
@@ -207,12 +218,14 @@ impl Renderer {
         view: &View,
         settings: &Settings,
     ) -> Result<()> {
+        let incomplete = self.frame.learn();
         let pending = self.make(scenes.into(), view, settings);
         // Also after an error: replaced resources may be in use.
         self.deferred.extend(self.frame.take_deferred());
         let (blocks, pending) = pending?;
         let scenes: Vec<_> = self.frame.scenes().collect();
         self.reports.begin(&self.device, &scenes)?;
+        self.reports.mark(incomplete);
         self.deferred.advance();
         let (timestamps, tail) = self.reports.present();
         // SAFETY: by the caller; there is a report for each frame in flight.
@@ -283,7 +296,9 @@ impl Renderer {
     /// # Safety
     /// The GPU has finished every frame that was prepared without an error.
     pub unsafe fn finish(&mut self) -> Result<()> {
-        self.reports.finish()
+        self.reports.finish()?;
+        self.reports.mark(self.frame.learn());
+        Ok(())
     }
 
     /// Creates the resources of a frame: its uniforms, and the draw of its picture.

@@ -75,6 +75,13 @@ impl Reports {
         self.last.as_ref()
     }
 
+    /// Marks the last report as that of an incomplete frame, if it is.
+    pub(super) fn mark(&mut self, incomplete: bool) {
+        if let Some(last) = &mut self.last {
+            last.incomplete |= incomplete;
+        }
+    }
+
     /// Begins a frame of these scenes. The frame of the same slot before is over.
     pub(super) fn begin(&mut self, device: &Arc<Device>, scenes: &[&SceneResources]) -> Result<()> {
         let (next, measured) = ((self.present + 1) % self.slots.len(), self.measured);
@@ -167,6 +174,7 @@ impl Slot {
             SplatCounts::new(surfels, counts_in(bytes))
         });
         let timed = self.timestamps.as_ref().filter(|_| times);
-        Ok(Some(FrameReport { pass_times: timed.map_or(Ok(Vec::new()), Timestamps::read)?, counts }))
+        let pass_times = timed.map_or(Ok(Vec::new()), Timestamps::read)?;
+        Ok(Some(FrameReport { pass_times, counts, incomplete: false }))
     }
 }

@@ -1,6 +1,5 @@
 //! What a frame is: decided from scenes, camera and settings, before anything is made.
 
-use super::crowding::crowded;
 use super::rasterizer::{Fit, rasterizer_of, width_of_sums};
 use super::renderer::RenderOptions;
 use super::splat_list::{room_of_frame, team_of};
@@ -20,13 +19,14 @@ pub struct Description {
     pub scenes: Vec<SceneVariant>,
 }
 
-/// What a frame of these scenes is. Refuses what cannot be rendered.
+/// What a frame of these scenes is, whose splats come in slices if they are `crowded`. Refuses what cannot be rendered.
 pub fn describe(
     device: &Device,
     options: &RenderOptions,
     scenes: &[Placed<'_>],
     camera: &Camera,
     settings: &Settings,
+    crowded: bool,
 ) -> Result<Description> {
     settings.check()?;
     for Placed { scene, .. } in scenes {
@@ -36,7 +36,6 @@ pub fn describe(
     settings.check_outputs(options.outputs)?;
     let blocks = Blocks::new(camera, settings, options.size, scenes)?;
     let team = team_of(device, room_of_frame(device, scenes));
-    let crowded = crowded(scenes, camera, options.size);
     let fit = Fit::new(device, options, team.is_some(), crowded);
     let rasterizer = rasterizer_of(device, options, settings, scenes, fit)?;
     let perspective = camera.projection()?.perspective;

@@ -16,8 +16,8 @@
 //! 2. `frame/passes/NAME.rs`: a static `Pass` of that name: what it reads, what it writes (and maybe reads) and clears, its programs (shader, what
 //!    they run over) and whether they are dispatched or drawn. Layouts, barriers, label and timer follow; a test compares it with what the shader
 //!    declares.
-//! 3. `frame/methods/METHOD.rs`: its place among the method's passes, for each path that has it. After `normalize` and `shade` a pass works on
-//!    `Picture`, of compute shaders; drawn images are not seen by later passes.
+//! 3. `frame/methods/METHOD.rs`: its place among the method's passes, for each path that has it. After `normalize`, `surface` and `shade` a
+//!    pass works on `Image`, a storage image on the compute path; the raster path's is not seen by later passes.
 //! 4. `verify/reference/NAME.rs`, of pull–push `verify/reference/pull_push/NAME.rs`: the same in float64, called where the reference makes a pixel.
 //! 5. `tests/engine/NAME.rs`: holds a picture to the reference.
 //!

@@ -45,6 +45,10 @@ pub struct Frame<'a> {
     pub splats: Option<&'a SplatList>,
     /// How many of them there are.
     pub splat_count: u64,
+    /// See [`super::RenderOptions::most_splats`].
+    pub most_splats: Option<u32>,
+    /// Number of the frame.
+    pub number: u32,
     /// The instances of scenes for draws: in the order of the frame.
     pub runs: Vec<Run<'a>>,
     /// The same for dispatches, whose order does not matter: those of a batch together, as two dispatches must not write what one descriptor set names.
@@ -142,7 +146,8 @@ impl Prepared {
                 match (over, frame.splats) {
                     (Over::Tiles, Some(splats)) => {
                         let [columns, rows] = frame.targets.tiles();
-                        let hierarchy = splats.hierarchy(slice, self.slices(frame));
+                        let slices = [slice, self.slices(frame)];
+                        let hierarchy = splats.hierarchy(slices, frame.most_steps(), frame.number);
                         enc.dispatch(pipeline, &sets, &hierarchy, [columns, rows, 1]);
                     }
                     _ => enc.dispatch(pipeline, &sets, &(), grid_over(frame.targets.pixels())),
@@ -184,6 +189,15 @@ impl Prepared {
 }
 
 impl<'a> Frame<'a> {
+    /// Steps of a walk over a tile that visits about [`Frame::most_splats`]: two splats a step, and one step for each batch of a team and
+    /// for each group of siblings, of which there is about one a batch.
+    fn most_steps(&self) -> u32 {
+        let Some(most) = self.most_splats else { return i32::MAX as u32 };
+        let lanes = u64::from(self.variant.team.lanes);
+        let steps = u64::from(most).div_ceil(lanes) * (lanes / 2 + 2);
+        steps.clamp(1, i32::MAX as u64) as u32
+    }
+
     /// Each buffer and image of these that the frame has, as it is touched.
     pub fn uses(&self, accesses: &[(Resource, Access)]) -> Vec<Use> {
         let mut uses = Vec::new();

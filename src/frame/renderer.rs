@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::geometry::Camera;
 use crate::picture::Picture;
 use crate::scene::Scene;
-use crate::scene::instance::Instances;
+use crate::scene::instance::{Instances, Placed};
 use crate::settings::Settings;
 use crate::settings::{Outputs, Precision, Rasterizer};
 use crate::vk::shaders::layout::Counts;
@@ -35,6 +35,10 @@ pub struct RenderOptions {
     /// Run visibility, attribute and normalize as passes of their own where one dispatch over tiles could be all three: to time them, or to
     /// see what is between. The picture is the same, bit for bit.
     pub split: bool,
+    /// Bound on the work of a frame on the compute path: about the maximum number of splats that each tile of 8 × 8 px visits in visibility,
+    /// and again in coverage and attribute. A tile with more lacks the farthest ones, see [`FrameReport::incomplete`]. `None` visits all. The
+    /// raster path has no such bound.
+    pub most_splats: Option<u32>,
 }
 
 /// What is known of a rendered frame.
@@ -45,6 +49,8 @@ pub struct FrameReport {
     pub pass_times: Vec<PassTime>,
     /// Surfels by cull reason, if they were counted.
     pub counts: Option<SplatCounts>,
+    /// Whether a tile lacks splats, see [`RenderOptions::most_splats`]; in a host, also where a later frame did that is over.
+    pub incomplete: bool,
 }
 
 /// Surfels by cull reason in a frame.
@@ -88,10 +94,7 @@ impl Renderer {
         settings: &Settings,
     ) -> Result<FrameReport> {
         let placed = scenes.into().placed(self.frame.device())?;
-        let (blocks, _) = self.frame.prepare(&placed, camera, settings, false)?;
-        self.frame.record(&mut self.commands.begin()?, &blocks);
-        self.commands.submit()?;
-        self.report()
+        self.submit(&placed, camera, settings, false)
     }
 
     /// Renders a frame and reads it back.
@@ -102,14 +105,42 @@ impl Renderer {
         settings: &Settings,
     ) -> Result<(Picture, FrameReport)> {
         let placed = scenes.into().placed(self.frame.device())?;
-        let (blocks, _) = self.frame.prepare(&placed, camera, settings, true)?;
+        let report = self.submit(&placed, camera, settings, true)?;
+        let present = self.frame.present();
+        let picture = present.map(|present| present.targets.picture(&present.readback));
+        Ok((picture.unwrap_or_default(), report))
+    }
+
+    /// Renders a frame, and once more with its splats in slices if a tile lacked some.
+    fn submit(
+        &mut self,
+        placed: &[Placed<'_>],
+        camera: &Camera,
+        settings: &Settings,
+        read: bool,
+    ) -> Result<FrameReport> {
+        let report = self.submit_once(placed, camera, settings, read)?;
+        match report.incomplete && self.frame.most_splats().is_none() {
+            true => self.submit_once(placed, camera, settings, read),
+            false => Ok(report),
+        }
+    }
+
+    fn submit_once(
+        &mut self,
+        placed: &[Placed<'_>],
+        camera: &Camera,
+        settings: &Settings,
+        read: bool,
+    ) -> Result<FrameReport> {
+        let (blocks, _) = self.frame.prepare(placed, camera, settings, read)?;
         let mut rec = self.commands.begin()?;
         self.frame.record(&mut rec, &blocks);
-        let present = self.frame.present();
-        present.inspect(|present| present.targets.record_readback(&mut rec, &present.readback));
+        if let Some(present) = self.frame.present().filter(|_| read) {
+            present.targets.record_readback(&mut rec, &present.readback);
+        }
         self.commands.submit()?;
-        let picture = present.map(|present| present.targets.picture(&present.readback));
-        Ok((picture.unwrap_or_default(), self.report()?))
+        self.report()
     }
 
     /// Whether later frames are profiled, if [`RenderOptions::profile`] was asked for: what a whole frame costs is best timed without.
@@ -152,11 +183,12 @@ impl Renderer {
     }
 
     /// What the frame that is over tells.
-    fn report(&self) -> Result<FrameReport> {
+    fn report(&mut self) -> Result<FrameReport> {
         let counted = self.frame.present().is_some_and(|present| present.variant.count);
         Ok(FrameReport {
             pass_times: self.commands.pass_times()?,
             counts: counted.then(|| SplatCounts::of(self.frame.scenes())),
+            incomplete: self.frame.learn(),
         })
     }
 }

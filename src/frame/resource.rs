@@ -41,6 +41,8 @@ pub enum Resource {
     Depth,
     /// Ids of the visible points, if requested.
     Id,
+    /// The number of the last frame that lacks splats of a tile; see `crowding`.
+    IncompleteFrame,
     /// The depth of a host's surfaces.
     HostDepth,
 }
@@ -68,6 +70,7 @@ impl Resource {
             Self::Normal => "normal",
             Self::Depth => "depth",
             Self::Id => "id",
+            Self::IncompleteFrame => "incomplete frame",
             Self::HostDepth => "host depth",
         }
     }

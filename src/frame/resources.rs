@@ -1,5 +1,6 @@
 //! What frames are made with: pipelines, targets and what is made of scenes, made when scene or settings change, and recorded in every frame.
 
+use super::crowding::Crowding;
 use super::description::{Description, describe};
 use super::pass::{Commands, Pass, Programs};
 use super::pipelines::{Host, Pipelines};
@@ -37,6 +38,7 @@ pub struct FrameResources {
     splats: Option<Arc<SplatList>>,
     /// How many of them there are.
     splat_count: u64,
+    crowding: Crowding,
     pipelines: Pipelines,
     view: Arc<Buffer>,
     options: RenderOptions,
@@ -105,6 +107,7 @@ impl FrameResources {
             places: Vec::new(),
             splats: None,
             splat_count: 0,
+            crowding: Crowding::new(device)?,
             pipelines: Pipelines::new(host),
             view: Arc::new(Buffer::uniform(device, "frame", uniforms::BYTES)?),
             options,
@@ -183,7 +186,19 @@ impl FrameResources {
         settings: &Settings,
         size: [u32; 2],
     ) -> Result<Description> {
-        describe(&self.device, &RenderOptions { size, ..self.options }, scenes, camera, settings)
+        // Where the work of a tile is bounded there are no slices.
+        let crowded = self.most_splats().is_none() && self.crowding.is_crowded(scenes, camera, size);
+        describe(&self.device, &RenderOptions { size, ..self.options }, scenes, camera, settings, crowded)
+    }
+
+    /// See [`RenderOptions::most_splats`].
+    pub fn most_splats(&self) -> Option<u32> {
+        self.options.most_splats
+    }
+
+    /// Whether a frame that is over lacked splats since the last call.
+    pub fn learn(&mut self) -> bool {
+        self.crowding.learn()
     }
 
     /// Makes what a frame needs and is not there, with buffers to read it back where it is `read`: the frame's numbers, and what it is.
@@ -196,6 +211,7 @@ impl FrameResources {
     ) -> Result<(Blocks, Variant)> {
         let frame = self.describe(scenes, camera, settings, self.options.size)?;
         self.make(scenes, &frame, self.options.size, &[])?;
+        self.crowding.begin(scenes, camera, self.options.size);
         match &mut self.present {
             Some(present) if read && present.readback.is_empty() => {
                 present.readback = present.targets.make_readback(&self.device)?;
@@ -243,6 +259,9 @@ impl FrameResources {
             let counts = self.scenes().flat_map(|scene| scene.buffers(super::resource::Resource::Counts));
             awaited.extend(counts.map(|counts| counts.with(Access::HOST_READ)));
         }
+        if present.variant.is_tiled() {
+            awaited.push(self.crowding.buffer().with(Access::HOST_READ));
+        }
         if !awaited.is_empty() {
             rec.wait(&awaited);
         }
@@ -268,10 +287,18 @@ impl FrameResources {
         }
         let Present { variant, targets, view, .. } = present;
         let splats = self.splats.as_deref().filter(|_| variant.is_tiled());
-        Some((
-            present,
-            Frame { variant, view: &view.set, targets, splats, splat_count: self.splat_count, runs, batches },
-        ))
+        let frame = Frame {
+            variant,
+            view: &view.set,
+            targets,
+            splats,
+            splat_count: self.splat_count,
+            most_splats: self.most_splats(),
+            number: self.crowding.frame(),
+            runs,
+            batches,
+        };
+        Some((present, frame))
     }
 
     /// Records the writing of a frame's numbers.
@@ -365,7 +392,8 @@ impl FrameResources {
         self.splat_count = room.splats;
         if !self.splats.as_ref().is_some_and(|splats| splats.fits(variant, room)) {
             self.made += 1;
-            let made = SplatList::new(&self.device, variant, room, self.made, self.splats.as_deref())?;
+            let made =
+                SplatList::new(variant, room, self.made, self.splats.as_deref(), self.crowding.buffer())?;
             self.retired.take(self.splats.replace(Arc::new(made)));
         }
         Ok(shares)

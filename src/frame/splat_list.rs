@@ -39,6 +39,8 @@ pub struct SplatList {
     boxes: Buffer,
     attributes: Buffer,
     clips: Option<Buffer>,
+    /// The number of the last frame that lacks splats.
+    incomplete: Arc<Buffer>,
     rows: u64,
     room: Room,
     levels: Vec<BoxLevel>,
@@ -80,14 +82,15 @@ struct BoxLevel {
 }
 
 impl SplatList {
-    /// A list for frames of `variant`, with as many rows of attributes as an `old` one.
+    /// A list for frames of `variant`, with as many rows of attributes as an `old` one. Passes write to `incomplete`.
     pub fn new(
-        device: &Arc<Device>,
         variant: &Variant,
         room: Room,
         id: u64,
         old: Option<&Self>,
+        incomplete: &Arc<Buffer>,
     ) -> Result<Self> {
+        let device = incomplete.device();
         let levels = levels(room.splats);
         let boxes = levels.last().map_or(0, |top| top.start + top.boxes);
         let rows = variant.attribute_rows().max(old.map_or(1, |old| old.rows));
@@ -111,6 +114,7 @@ impl SplatList {
             boxes,
             attributes,
             clips,
+            incomplete: incomplete.clone(),
             rows,
             room,
             levels,
@@ -135,7 +139,7 @@ impl SplatList {
 
     /// What passes over tiles see of it in frames of `variant`.
     pub fn bindings(&self, variant: &Variant) -> Vec<(&'static shaders::Resource, Binding<'_>)> {
-        let mut list = Vec::new();
+        let mut list = vec![(&resource::INCOMPLETE_FRAME, Binding::whole(&self.incomplete))];
         match &self.texels {
             Some(texels) => {
                 let clips = texels.clips.as_ref().filter(|_| variant.clips);
@@ -185,6 +189,7 @@ impl SplatList {
             Resource::Boxes => Some(&self.boxes),
             Resource::Attributes => Some(&self.attributes),
             Resource::ScreenClips => self.clips.as_ref(),
+            Resource::IncompleteFrame => Some(&self.incomplete),
             _ => None,
         }
     }
@@ -207,13 +212,22 @@ impl SplatList {
     }
 
     /// The hierarchy with a slice of it, as push constants: all of it, if that is the only one.
-    pub fn hierarchy(&self, slice: u32, slices: u32) -> Hierarchy {
+    pub fn hierarchy(&self, [slice, slices]: [u32; 2], most_steps: u32, frame_number: u32) -> Hierarchy {
         let mut starts = [0; 10];
         for (start, level) in starts.iter_mut().zip(&self.levels) {
             *start = level.start as u32;
         }
         let level = if slices > 1 { SLICES - 1 } else { self.levels.len() as u32 - 1 };
-        Hierarchy { starts, attribute_rows: self.rows as u32, level, group: slice, slice, slices }
+        Hierarchy {
+            starts,
+            attribute_rows: self.rows as u32,
+            level,
+            group: slice,
+            slice,
+            slices,
+            most_steps,
+            frame_number,
+        }
     }
 
     /// The steps that make its levels above so many splats, fine to coarse, as push constants.

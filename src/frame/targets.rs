@@ -101,6 +101,7 @@ impl Resource {
             Self::Pulled => &[&resource::TO_DEPTHS],
             Self::Pushed => &[&resource::FINAL_DEPTHS],
             Self::HostDepth => &[&resource::HOST_DEPTH],
+            Self::IncompleteFrame => &[&resource::INCOMPLETE_FRAME],
             Self::Image => &[&resource::IMAGE_OUTPUT],
             Self::Normal => &[&resource::NORMAL_OUTPUT],
             Self::Depth => &[&resource::DEPTH_OUTPUT],
@@ -234,7 +235,8 @@ fn splat_resources(variant: &Variant) -> Vec<&'static shaders::Resource> {
         false => (&[&resource::FRAME_SPLATS, &resource::FRAME_ATTRIBUTES][..], &resource::FRAME_CLIPS),
     };
     let clips = variant.clips.then_some(clips);
-    of_splats.iter().copied().chain([&resource::BOXES]).chain(clips).collect()
+    let others = [&resource::BOXES, &resource::INCOMPLETE_FRAME];
+    of_splats.iter().copied().chain(others).chain(clips).collect()
 }
 
 /// What the targets of a frame take.

@@ -5,6 +5,7 @@ use super::memory::{self, Allocation, Location, MemoryRequest};
 use crate::error::{Error, Result};
 use ash::vk;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 /// A buffer with its memory.
 pub struct Buffer {
@@ -115,6 +116,12 @@ impl Buffer {
     pub fn bytes(&self) -> &[u8] {
         let mapped = self.allocation.as_ref().map_or(&[][..], Allocation::mapped);
         &mapped[..mapped.len().min(self.size as usize)]
+    }
+
+    /// The first word of a mapped buffer, which the GPU may be writing; 0 for others.
+    pub fn load(&self) -> u32 {
+        let mapped = self.allocation.as_ref().and_then(Allocation::first_word);
+        mapped.map_or(0, |word| word.load(Ordering::Relaxed))
     }
 
     /// Like [`Buffer::bytes`], for writing.

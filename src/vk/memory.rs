@@ -8,7 +8,7 @@ use gpu_allocator::vulkan::{AllocationCreateDesc, AllocationScheme, Allocator, A
 use gpu_allocator::{AllocationError, AllocationSizes, MemoryLocation};
 use std::ptr::NonNull;
 use std::sync::Mutex;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Use of device memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -254,6 +254,19 @@ impl Allocation {
             },
             Self::Host(_) | Self::Lazy(..) => &[],
         }
+    }
+
+    /// The first mapped word, which the GPU may be writing; `None` if the memory is not mapped.
+    pub(super) fn first_word(&self) -> Option<&AtomicU32> {
+        let start: *mut u8 = match self {
+            Self::Own(allocation) => allocation.mapped_ptr()?.as_ptr().cast(),
+            Self::Host(memory) => memory.mapped?.as_ptr(),
+            Self::Lazy(..) => return None,
+        };
+        let start = start.cast::<u32>();
+        // SAFETY: the memory is mapped while the allocation lives, is coherent, and is read atomically here.
+        (self.size() >= size_of::<u32>() as u64 && start.is_aligned())
+            .then(|| unsafe { AtomicU32::from_ptr(start) })
     }
 
     /// Like [`Allocation::mapped`], for writing.

@@ -8,10 +8,10 @@ use crate::{FLOATS, ONE};
 use ash::vk;
 use std::ffi::{CStr, c_void};
 use std::sync::{Arc, Mutex};
+use surfel::Rasterizer;
 use surfel::embed::{Options, Renderer, View};
 use surfel::settings::methods::Method;
 use surfel::vk::Device;
-use surfel::{Precision, Rasterizer};
 
 /// Source stages of the barriers on the host's device.
 static WAITED_FOR: Mutex<Vec<vk::PipelineStageFlags>> = Mutex::new(Vec::new());
@@ -53,12 +53,7 @@ fn no_barrier_waits_for_everything() {
     let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
     let frame = Frame::new(&host, kind, SIZE).unwrap();
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
-        let options = Options {
-            target: frame.target(),
-            frames_in_flight: 2,
-            precision: Precision::Full,
-            rasterizer: Some(rasterizer),
-        };
+        let options = Options { rasterizer: Some(rasterizer), ..Options::new(frame.target()) };
         // SAFETY: the target is the frame's.
         let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
         for method in Method::ALL {

@@ -17,7 +17,7 @@ use surfel::geometry::Camera;
 use surfel::settings::methods::Method;
 use surfel::settings::splatting::Visibility;
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
-use surfel::{Error, Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Settings};
+use surfel::{Error, Outputs, Picture, Rasterizer, RenderOptions, Scene, Settings};
 
 use crate::fixture::{SIZE, camera, meets, rising, sphere, surfels, viewport};
 
@@ -150,7 +150,7 @@ fn numbers_are_the_engines_own() {
         let device = host.external_device(None).unwrap();
         let depth = frame.target().depth.filter(|_| has_depth);
         let target = embed::Target { depth, ..frame.target() };
-        let options = Options { target, frames_in_flight: 1, precision: Precision::Full, rasterizer: None };
+        let options = Options { frames_in_flight: 1, ..Options::new(target) };
         // SAFETY: the target is the frame's.
         let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
         let scene = upload(&host, &device, &surfels());
@@ -200,7 +200,7 @@ fn colours_are_encoded_by_the_shader_as_by_the_format() {
         let device = host.external_device(None).unwrap();
         let frame = Frame::new(&host, kind, SIZE).unwrap();
         let target = embed::Target { encode: colour == vk::Format::R8G8B8A8_UNORM, ..frame.target() };
-        let options = Options { target, frames_in_flight: 1, precision: Precision::Full, rasterizer: None };
+        let options = Options { frames_in_flight: 1, ..Options::new(target) };
         // SAFETY: the target is the frame's.
         let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
         let scene = upload(&host, &device, &surfels());
@@ -278,7 +278,7 @@ fn a_thousand_frames_of_all_sizes_and_scenes_leave_nothing() {
     {
         let scenes = [500, 2_000].map(|count| upload(&host, &device, &sphere(count)));
         let target = frame.target();
-        let options = Options { target, frames_in_flight: 2, precision: Precision::Full, rasterizer: None };
+        let options = Options::new(target);
         // SAFETY: the target is the frame's.
         let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
         let settings =
@@ -320,8 +320,7 @@ fn without_memory_there_is_an_error_and_then_there_is_memory() {
     let device = host.external_device(Some(Box::new(memory))).unwrap();
     let kind = Kind { way: Way::Rendering, colour: FLOATS, normals: false, samples: ONE, reversed: true };
     let frame = Frame::new(&host, kind, SIZE).unwrap();
-    let options =
-        Options { target: frame.target(), frames_in_flight: 1, precision: Precision::Full, rasterizer: None };
+    let options = Options { frames_in_flight: 1, ..Options::new(frame.target()) };
     // SAFETY: the target is the frame's.
     let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
     let scene = upload(&host, &device, &surfels());
@@ -398,7 +397,7 @@ fn what_cannot_be_served_is_refused_and_says_why() {
         (|t| (t.colours[0], t.encode) = (vk::Format::R8G8B8A8_SRGB, true), "encodes sRGB itself"),
     ];
     let make = |target, frames_in_flight| {
-        let options = Options { target, frames_in_flight, precision: Precision::Full, rasterizer: None };
+        let options = Options { frames_in_flight, ..Options::new(target) };
         // SAFETY: nothing is created for a rejected target.
         unsafe { Renderer::new(&fixture.device, options) }
     };
@@ -412,8 +411,7 @@ fn what_cannot_be_served_is_refused_and_says_why() {
         .external_device_within(DeviceLimits { dynamic_rendering: Some(false), ..Default::default() }, None)
         .unwrap();
     let rendering = embed::Target { pass: embed::Pass::Rendering, ..target.clone() };
-    let options =
-        Options { target: rendering, frames_in_flight: 2, precision: Precision::Full, rasterizer: None };
+    let options = Options::new(rendering);
     // SAFETY: nothing is created for a rejected target.
     let refused = unsafe { Renderer::new(&hidden, options) }.err().unwrap().to_string();
     assert!(refused.contains("the feature dynamicRendering"), "{refused}");

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use surfel::embed::{self, Abilities, Options, Renderer, View};
 use surfel::geometry::{Camera, Surfels};
 use surfel::vk::Device;
-use surfel::{Precision, Rasterizer, Scene, Settings};
+use surfel::{Rasterizer, Scene, Settings};
 
 /// Width and height of a frame, px.
 pub const SIZE: [u32; 2] = [160, 120];
@@ -51,8 +51,7 @@ impl Fixture {
     ) -> Self {
         let device = host.external_device(None).unwrap();
         let frame = Frame::new(host, kind, size).unwrap();
-        let options =
-            Options { target: frame.target(), frames_in_flight: 2, precision: Precision::Full, rasterizer };
+        let options = Options { rasterizer, ..Options::new(frame.target()) };
         // SAFETY: the target is the frame's.
         let renderer = unsafe { Renderer::new(&device, options) }.unwrap();
         let scene = upload(host, &device, surfels);

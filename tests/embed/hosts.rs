@@ -14,7 +14,7 @@ use surfel::embed::{self, Changes, Options, Renderer, View};
 use surfel::geometry::{Camera, Surfels};
 use surfel::settings::methods::Method;
 use surfel::vk::{Device, DeviceOptions};
-use surfel::{Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Settings};
+use surfel::{Outputs, Picture, Rasterizer, RenderOptions, Scene, Settings};
 
 const PLAIN: Kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
 
@@ -37,7 +37,7 @@ fn alone(
 /// A renderer for a frame.
 fn renderer(device: &Arc<Device>, frame: &Frame, rasterizer: Option<Rasterizer>) -> Renderer {
     let target = frame.target();
-    let options = Options { target, frames_in_flight: 2, precision: Precision::Full, rasterizer };
+    let options = Options { rasterizer, ..Options::new(target) };
     // SAFETY: the target is the frame's, which outlives the renderer.
     unsafe { Renderer::new(device, options) }.unwrap()
 }

@@ -17,7 +17,7 @@ use surfel::geometry::Surfels;
 use surfel::settings::methods::Method;
 use surfel::settings::splatting::Visibility;
 use surfel::vk::{Device, DeviceOptions};
-use surfel::{Instance, Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Settings};
+use surfel::{Instance, Outputs, Picture, Rasterizer, RenderOptions, Scene, Settings};
 
 const KIND: Kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
 /// Splats are seeded by the host's depth.
@@ -60,7 +60,7 @@ fn alone(settings: &Settings, rasterizer: Rasterizer) -> Picture {
 }
 
 fn options(frame: &Frame, rasterizer: Option<Rasterizer>) -> Options {
-    Options { target: frame.target(), frames_in_flight: 2, precision: Precision::Full, rasterizer }
+    Options { rasterizer, ..Options::new(frame.target()) }
 }
 
 /// A frame of the instances; empty after an error.

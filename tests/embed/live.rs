@@ -16,7 +16,7 @@ use surfel::geometry::{Bounds, Colours, Surfels};
 use surfel::settings::methods::Method;
 use surfel::settings::splatting::Visibility;
 use surfel::vk::{Device, DeviceLimits};
-use surfel::{Picture, Precision, Rasterizer, RenderOptions, Scene, Settings, SplatCounts};
+use surfel::{Picture, Rasterizer, RenderOptions, Scene, Settings, SplatCounts};
 
 /// Limits so low that a scene of 20,000 surfels has several chunks, with a coarser alignment than a vertex.
 pub const NARROW: DeviceLimits = DeviceLimits {
@@ -298,8 +298,7 @@ fn buffers_that_take_turns_make_nothing() {
     let frame = Frame::new(&host, KIND, SIZE).unwrap();
     // For tiles splats are the frame's, not the scenes'.
     let rasterizer = Some(Rasterizer::Draw);
-    let options =
-        Options { target: frame.target(), frames_in_flight: 2, precision: Precision::Full, rasterizer };
+    let options = Options { rasterizer, ..Options::new(frame.target()) };
     // SAFETY: the target is the frame's.
     let mut rig = Rig { renderer: unsafe { Renderer::new(&device, options) }.unwrap(), device, frame };
     let (layout, surfels) = (Layout::vertices(), sphere(2_000));

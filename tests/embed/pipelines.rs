@@ -10,10 +10,10 @@ use std::ffi::{CStr, c_void};
 use std::sync::Arc;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
+use surfel::Settings;
 use surfel::embed::{Options, Renderer, View};
 use surfel::settings::methods::Method;
 use surfel::vk::Device;
-use surfel::{Precision, Settings};
 
 /// Number of pipelines created by the host that counts.
 static MADE: AtomicU64 = AtomicU64::new(0);
@@ -85,8 +85,7 @@ fn a_frame_whose_pipelines_are_there_makes_none() {
     let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
     let frame = Frame::new(&host, kind, SIZE).unwrap();
     let scene = upload(&host, &device, &surfels());
-    let options =
-        Options { target: frame.target(), frames_in_flight: 1, precision: Precision::Full, rasterizer: None };
+    let options = Options { frames_in_flight: 1, ..Options::new(frame.target()) };
     let view = View::whole(camera(), SIZE);
     for name in Method::ALL.map(|method| method.name) {
         let (first, next) = (settings("sprites-unfiltered"), settings(name));

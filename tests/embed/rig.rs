@@ -10,7 +10,7 @@ use std::sync::Arc;
 use surfel::embed::{Options, Renderer, View};
 use surfel::geometry::{Camera, Surfels};
 use surfel::vk::{Device, DeviceLimits};
-use surfel::{Precision, Rasterizer, Scene, Settings};
+use surfel::{Rasterizer, Scene, Settings};
 
 pub const SIZE: [u32; 2] = [160, 120];
 pub const KIND: Kind = Kind {
@@ -39,8 +39,7 @@ impl Rig {
     pub fn new(host: &Host, rasterizer: Option<Rasterizer>, limits: DeviceLimits) -> Self {
         let device = host.external_device_within(limits, None).unwrap();
         let frame = Frame::new(host, KIND, SIZE).unwrap();
-        let options =
-            Options { target: frame.target(), frames_in_flight: 8, precision: Precision::Full, rasterizer };
+        let options = Options { frames_in_flight: 8, rasterizer, ..Options::new(frame.target()) };
         // SAFETY: the target is the frame's.
         let renderer = unsafe { Renderer::new(&device, options) }.unwrap();
         Self { renderer, device, frame }

@@ -584,3 +584,37 @@ fn largest_difference(a: &Picture, b: &Picture) -> f32 {
     let pairs = a.colour.iter().flatten().zip(b.colour.iter().flatten());
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
 }
+
+/// 60,000 surfels within a few pixels, and 2,000 beside them.
+fn dense_spot() -> Surfels {
+    let mut all = sphere(2_000);
+    all.positions.iter_mut().for_each(|position| position.x -= 1.5);
+    let dense = sphere(60_000);
+    all.positions.extend(dense.positions.iter().map(|position| 0.01 * position + Vec3::X));
+    all.normals.extend(dense.normals);
+    all.radii.extend(dense.radii.iter().map(|radius| 0.01 * radius));
+    all.colours = None;
+    all
+}
+
+#[test]
+fn a_dense_spot_in_a_large_scene_has_all_of_its_splats() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let surfels = dense_spot();
+    let scene = Scene::upload(&device, &surfels).unwrap();
+    for (name, alpha) in [("perspective-ewa", Alpha::Mask), ("sprites-unfiltered", Alpha::Coverage)] {
+        let settings = Settings { alpha, ..Method::named(name).unwrap().settings() };
+        let drawn = render(&device, &surfels, &camera(SIZE), &settings, everything(Rasterizer::Draw));
+        let mut renderer = Renderer::new(&device, everything(Rasterizer::Compute)).unwrap();
+        for frame in 0..2 {
+            let (computed, report) = renderer.render_picture(&scene, &camera(SIZE), &settings).unwrap();
+            let apart = largest_difference(&drawn, &computed);
+            assert!(apart < 1e-4 && !report.incomplete, "{name}, frame {frame}: {apart}");
+        }
+        let bounded = RenderOptions { most_splats: Some(1_000), ..everything(Rasterizer::Compute) };
+        let mut bounded = Renderer::new(&device, bounded).unwrap();
+        let (picture, report) = bounded.render_picture(&scene, &camera(SIZE), &settings).unwrap();
+        assert!(report.incomplete && largest_difference(&drawn, &picture) > 1e-3, "{name}");
+    }
+    assert_silent(&device);
+}

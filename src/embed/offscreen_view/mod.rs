@@ -9,8 +9,8 @@ use crate::error::{Error, Result};
 use crate::frame::FrameReport;
 use crate::geometry::{Camera, ValueRange};
 use crate::scene::Scene;
+use crate::settings::Rasterizer;
 use crate::settings::Settings;
-use crate::settings::{Precision, Rasterizer};
 use crate::vk::{
     Access, Attachment, Buffer, Device, FRAMES_IN_FLIGHT, Framebuffer, Image, ImageUse, Presented, Presenter,
     Recorder, RenderPass, Stake, Timestamps,
@@ -84,8 +84,7 @@ impl OffscreenView {
             id: None,
             encode: false,
         };
-        let options =
-            Options { target, frames_in_flight: FRAMES_IN_FLIGHT, precision: Precision::Full, rasterizer };
+        let options = Options { frames_in_flight: FRAMES_IN_FLIGHT, rasterizer, ..Options::new(target) };
         // SAFETY: the target is this pass, which outlives the renderer; `drop` waits for the GPU.
         let renderer = unsafe { Renderer::new(device, options)? };
         Ok(Self {

@@ -2,7 +2,9 @@
 
 use super::tiles;
 use crate::frame::pass::{Commands, Over, Pass, Program, Programs, Start, Targets};
-use crate::frame::resource::Resource::{Attributes, Boxes, ScreenClips, Splats, Sums0, Sums1, Visibility};
+use crate::frame::resource::Resource::{
+    Attributes, Boxes, IncompleteFrame, ScreenClips, Splats, Sums0, Sums1, Visibility,
+};
 use crate::vk::shaders::{
     ATTRIBUTE_CLIP_LINES_FRAGMENT, ATTRIBUTE_CLIP_LINES_VERTEX, ATTRIBUTE_COMPUTE, ATTRIBUTE_FRAGMENT,
     ATTRIBUTE_SUBGROUPS_COMPUTE, ATTRIBUTE_VERTEX,
@@ -13,7 +15,7 @@ use crate::vk::{Blend, DepthTest, Topology};
 pub static COMPUTED: Pass = Pass {
     name: "attribute",
     reads: &[Splats, Boxes, Attributes, ScreenClips, Visibility],
-    writes: &[Sums0, Sums1],
+    writes: &[Sums0, Sums1, IncompleteFrame],
     clears: &[],
     programs: Programs::OfFrame(|variant| tiles(variant, [&ATTRIBUTE_COMPUTE, &ATTRIBUTE_SUBGROUPS_COMPUTE])),
     commands: Commands::Dispatches,

@@ -70,7 +70,7 @@ mod tests {
         all
     }
 
-    const RESOURCES: [Resource; 20] = [
+    const RESOURCES: [Resource; 21] = [
         Resource::Splats,
         Resource::Boxes,
         Resource::ScreenClips,
@@ -90,6 +90,7 @@ mod tests {
         Resource::Normal,
         Resource::Depth,
         Resource::Id,
+        Resource::IncompleteFrame,
         Resource::HostDepth,
     ];
 

@@ -3,7 +3,8 @@
 use super::tiles;
 use crate::frame::pass::{Commands, Over, Pass, Program, Programs, Start, Targets};
 use crate::frame::resource::Resource::{
-    Attributes, Boxes, Coverage, Depth, Image, Normal, ScreenClips, Splats, Sums0, Sums1, Visibility,
+    Attributes, Boxes, Coverage, Depth, Image, IncompleteFrame, Normal, ScreenClips, Splats, Sums0, Sums1,
+    Visibility,
 };
 use crate::vk::shaders::{
     NEAREST_CLIP_LINES_FRAGMENT, NEAREST_CLIP_LINES_VERTEX, NEAREST_COMPUTE, NEAREST_COVERAGE_FRAGMENT,
@@ -16,7 +17,7 @@ use crate::vk::{Blend, DepthTest, Topology};
 pub static COMPUTED: Pass = Pass {
     name: "nearest",
     reads: &[Splats, Boxes, Attributes, ScreenClips],
-    writes: &[Visibility, Sums0, Coverage, Image, Normal, Depth],
+    writes: &[Visibility, Sums0, Coverage, Image, Normal, Depth, IncompleteFrame],
     clears: &[],
     programs: Programs::OfFrame(|variant| {
         let modules = match variant.sliced {

@@ -2,14 +2,16 @@
 
 use super::tiles;
 use crate::frame::pass::{Commands, Pass, Programs};
-use crate::frame::resource::Resource::{Attributes, Boxes, Depth, Image, Normal, ScreenClips, Splats};
+use crate::frame::resource::Resource::{
+    Attributes, Boxes, Depth, Image, IncompleteFrame, Normal, ScreenClips, Splats,
+};
 use crate::vk::shaders::{SURFACE_COMPUTE, SURFACE_SUBGROUPS_COMPUTE};
 
 /// A workgroup a tile.
 pub static SURFACE: Pass = Pass {
     name: "surface",
     reads: &[Splats, Boxes, Attributes, ScreenClips],
-    writes: &[Image, Normal, Depth],
+    writes: &[Image, Normal, Depth, IncompleteFrame],
     clears: &[],
     programs: Programs::OfFrame(|variant| tiles(variant, [&SURFACE_COMPUTE, &SURFACE_SUBGROUPS_COMPUTE])),
     commands: Commands::Dispatches,

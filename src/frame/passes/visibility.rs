@@ -2,7 +2,7 @@
 
 use super::tiles;
 use crate::frame::pass::{Commands, Over, Pass, Program, Programs, Start, Targets};
-use crate::frame::resource::Resource::{Boxes, Coverage, ScreenClips, Splats, Visibility};
+use crate::frame::resource::Resource::{Boxes, Coverage, IncompleteFrame, ScreenClips, Splats, Visibility};
 use crate::vk::shaders::{
     VISIBILITY_CLIP_LINES_FRAGMENT, VISIBILITY_CLIP_LINES_VERTEX, VISIBILITY_COMPUTE,
     VISIBILITY_COVERAGE_FRAGMENT, VISIBILITY_COVERAGE_VERTEX, VISIBILITY_FRAGMENT,
@@ -14,7 +14,7 @@ use crate::vk::{Blend, DepthTest, Topology};
 pub static COMPUTED: Pass = Pass {
     name: "visibility",
     reads: &[Splats, Boxes, ScreenClips],
-    writes: &[Visibility, Coverage],
+    writes: &[Visibility, Coverage, IncompleteFrame],
     clears: &[],
     programs: Programs::OfFrame(|variant| {
         tiles(variant, [&VISIBILITY_COMPUTE, &VISIBILITY_SUBGROUPS_COMPUTE])

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use surfel::embed::{Options, Renderer, View};
 use surfel::geometry::Camera;
 use surfel::vk::Device;
-use surfel::{Instance, Precision, Settings};
+use surfel::{Instance, Settings};
 
 /// Contents of a composite.
 pub trait Content: Sized {
@@ -67,12 +67,7 @@ impl<C: Content> Composite<C> {
         };
         let frame = Frame::new(host, kind, SIZE)?;
         let mesh = Mesh::new(host, &C::triangles(), frame.mesh_target())?;
-        let options = Options {
-            target: frame.target(),
-            frames_in_flight: FRAMES_IN_FLIGHT,
-            precision: Precision::Full,
-            rasterizer: None,
-        };
+        let options = Options { frames_in_flight: FRAMES_IN_FLIGHT, ..Options::new(frame.target()) };
         // SAFETY: the target is the frame's, which is destroyed after the renderer and keeps its pass for all sizes.
         let renderer = unsafe { Renderer::new(&device, options)? };
         Ok(Self { content, frame, mesh, renderer, settings: C::settings(arguments), device })

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use surfel::embed::{self, Options, Pass, Renderer, Target, View};
 use surfel::geometry::{Camera, Surfels};
 use surfel::vk::Device;
-use surfel::{Precision, Scene, Settings};
+use surfel::{Scene, Settings};
 use wgpu::hal::vulkan::Api as Vulkan;
 
 /// Surfels and their renderer for frames of wgpu. The GPU must have finished using it when it is dropped.
@@ -72,12 +72,7 @@ impl Embedded {
             id: None,
             encode: false,
         };
-        let options = Options {
-            target,
-            frames_in_flight: FRAMES_IN_FLIGHT,
-            precision: Precision::Full,
-            rasterizer: None,
-        };
+        let options = Options { frames_in_flight: FRAMES_IN_FLIGHT, ..Options::new(target) };
         // SAFETY: the target is this pass, which outlives the renderer.
         let renderer = unsafe { Renderer::new(&device, options)? };
         Ok(Self { renderer, scene, device, attached: None, pass, _device: gpu.device.clone() })
