@@ -1,7 +1,7 @@
 //! Reports of finished frames: pass times and surfel counts.
 
 use crate::composite::frames;
-use crate::fixture::{Fixture, SIZE, assert_silent, open, surfels, upload};
+use crate::fixture::{Fixture, SIZE, assert_silent, open, sphere, surfels, upload};
 use crate::host::Host;
 use crate::host::frame::{Kind, Way};
 use crate::host::native::{self, Native};
@@ -127,6 +127,41 @@ fn a_frame_that_was_never_submitted_tells_nothing() {
         assert_eq!(report.is_some_and(|report| !report.pass_times.is_empty()), submitted, "{number}");
     }
     fixture.destroy(&host);
+    assert_silent(&host);
+}
+
+#[test]
+fn a_frame_that_lacks_splats_is_reported_and_the_next_one_lacks_none() {
+    let Some(host) = open(|all| all) else { return };
+    let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
+    // 60,000 surfels within a few pixels, and 20,000 around them that nearly all are behind the camera.
+    let mut all = surfels();
+    all.positions.iter_mut().for_each(|position| position.z += 4.0);
+    let dense = sphere(60_000);
+    all.positions.extend(dense.positions.iter().map(|position| 0.01 * position));
+    all.normals.extend(&dense.normals);
+    all.radii.extend(dense.radii.iter().map(|radius| 0.01 * radius));
+    all.colours = None;
+    let (view, settings) = (View::whole(nearer(0), SIZE), Settings::default());
+    let frames = |rasterizer| {
+        let mut fixture = Fixture::new(&host, kind, SIZE, Some(rasterizer), &all);
+        fixture.renderer.measure(Measured { times: true, counts: false });
+        let frames = [(); 2].map(|()| {
+            let colours = fixture.render(&host, &view, &settings, None).0;
+            // SAFETY: the frame was waited for.
+            unsafe { fixture.renderer.finish() }.unwrap();
+            (colours, fixture.renderer.report().unwrap().incomplete)
+        });
+        fixture.destroy(&host);
+        frames
+    };
+    let [drawn, _] = frames(Rasterizer::Draw);
+    let [first, second] = frames(Rasterizer::Compute);
+    assert_eq!((drawn.1, first.1, second.1), (false, true, false));
+    let shown = drawn.0.iter().filter(|pixel| pixel[3] > 0.0).count();
+    assert!(shown > 4, "{shown} px");
+    let differences = drawn.0.iter().flatten().zip(second.0.iter().flatten()).map(|(a, b)| (a - b).abs());
+    assert!(differences.fold(0.0, f32::max) < 1e-4);
     assert_silent(&host);
 }
 
