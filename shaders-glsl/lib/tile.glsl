@@ -215,9 +215,10 @@ uint clip_of(uint id) {
     return CLIPS ? load_box(id).w : NO_CLIP;
 }
 
-// Ids of the splats that visibility visited on the tile, in order, up to MOST_VISITED; attribute rasterizes these.
-const uint MOST_VISITED = 512;
-shared uint visited_ids[MOST_VISITED + 64];
+// Ids of the splats that visibility visited on the tile, in order, up to MOST_VISITED; attribute rasterizes these. There is room for a
+// batch and a block more. Walks that keep none use another part, from SCRATCH on.
+const uint MOST_VISITED = 512, MOST_PENDING = 64 + 512, SCRATCH = MOST_VISITED + MOST_PENDING;
+shared uint visited_ids[SCRATCH + MOST_PENDING];
 uint visited_count;
 
 uint lane_level_start;

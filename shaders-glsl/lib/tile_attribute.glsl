@@ -68,13 +68,6 @@ void sum_attributes(uvec2 origin) {
     attribute_cull_key = 0.999999 * workgroup_min(least);
     WORKGROUP_BARRIER();
     bool all_recorded = visited_count <= MOST_VISITED;
-    uint done = 0, recorded = all_recorded ? visited_count : 0;
-    do {
-        uint count = min(recorded - done, LANES);
-        uint id = lane < count ? visited_ids[done + lane] : 0;
-        add_attribute_batch(count, id, origin);
-        done += count;
-    } while (done < recorded);
-    attribute_cull_key = all_recorded ? 1e30 : attribute_cull_key;
-    walk_attribute(origin, origin + TILE - 1);
+    uint first = all_recorded ? 0 : SCRATCH, end = all_recorded ? visited_count : SCRATCH;
+    walk_attribute(origin, origin + TILE - 1, first, end, !all_recorded);
 }

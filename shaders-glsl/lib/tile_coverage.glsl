@@ -88,5 +88,5 @@ void compute_coverage(uvec2 origin) {
     for (uint r = 0; r < ROWS; r++) coverage_masks[r] = is_resumed() ? coverage_masks[r] : 0;
     for (uint r = 0; r < ROWS; r++) depths[r] = is_in_viewport(origin + lane_pixel(r)) ? depths[r] : 0.0;
     update_coverage_cull_key();
-    walk_coverage(origin, origin + TILE - 1);
+    walk_coverage(origin, origin + TILE - 1, SCRATCH, SCRATCH, true);
 }

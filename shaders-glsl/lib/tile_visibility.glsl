@@ -53,7 +53,7 @@ void add_visibility_batch(uint count, uint id, uvec2 origin) {
 #endif
 #define WALK_STEPS VISIBILITY_STEPS
 #define WALK_CULL_KEY visibility_cull_key
-#define WALK_RECORD
+#define WALK_RECORDS
 #define WALK_BATCH(count, id) add_visibility_batch(count, id, origin)
 #include "lib/walk.glsl"
 
@@ -68,5 +68,5 @@ void compute_visibility(uvec2 origin) {
     }
     update_visibility_cull_key();
     visited_count = 0;
-    walk_visibility(origin, origin + TILE - 1);
+    walk_visibility(origin, origin + TILE - 1, 0, 0, true);
 }
