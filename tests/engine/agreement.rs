@@ -1,4 +1,4 @@
-//! The GPU's picture is the float64 reference's, pixel by pixel, and a picture that is off by a little is not.
+//! GPU pictures match the float64 reference pixel by pixel, and slightly wrong pictures do not.
 
 use crate::support::gpu::{Renderers, assert_silent, device};
 use crate::support::if_whole;
@@ -13,10 +13,10 @@ use surfel::verify::reference::{Comparison, Expected, Surfel, Tolerance};
 use surfel::vk::DeviceLimits;
 use surfel::{Outputs, Picture, Rasterizer, RenderOptions, Settings};
 
-/// Share of the object's pixels that the reference may hold to be undecided.
-const MOST_DOUBT: f64 = 0.02;
+/// Largest fraction of ambiguous object pixels.
+const MOST_AMBIGUOUS: f64 = 0.02;
 
-/// A case through one of its cameras, with the reference's picture.
+/// A case from one of its cameras, with the reference picture.
 struct View<'a> {
     case: &'a Case,
     camera: Camera,
@@ -30,7 +30,7 @@ impl<'a> View<'a> {
         Self { case, camera, expected: expected.unwrap() }
     }
 
-    /// The device's picture of maybe other surfels with maybe other settings.
+    /// Renders surfels and settings, which may differ from the case's.
     fn picture(
         &self,
         renderers: &Renderers,
@@ -47,8 +47,8 @@ impl<'a> View<'a> {
         renderers.render(surfels, &self.camera, settings, options)
     }
 
-    /// The verdict on the device's picture of maybe other surfels with maybe other settings.
-    fn judge(
+    /// Compares a rendered picture with the reference; surfels and settings may differ from the case's.
+    fn compare(
         &self,
         renderers: &Renderers,
         rasterizer: Rasterizer,
@@ -69,7 +69,7 @@ fn every_case_through_every_camera() {
 fn every_case_with_only_small_splats_widened() {
     let mut cases = cases();
     cases.iter_mut().for_each(|case| case.settings.widen = Widen::Small);
-    assert_agree(failures(&cases, &views_in_turn(0), "only small"));
+    assert_agree(failures(&cases, &rotated_views(0), "only small"));
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn every_case_by_every_method() {
             widen: method.widen,
             ..case.settings.clone()
         });
-        failures(&cases, &some_in_turn(i, 3), method.name)
+        failures(&cases, &sampled_views(i, 3), method.name)
     };
     assert_agree(Method::SPLATTING[1..].iter().enumerate().flat_map(by).collect());
 }
@@ -92,13 +92,13 @@ fn every_case_with_coverage() {
     let all = [Splatting::default(), object_ewa::METHOD.splatting, sprites::UNFILTERED.splatting];
     let by = |(i, splatting): (usize, Splatting)| {
         let cases = with_axes(|case| Settings { splatting, alpha: Alpha::Coverage, ..case.settings.clone() });
-        failures(&cases, &some_in_turn(i, 2), &format!("coverage, {splatting:?}"))
+        failures(&cases, &sampled_views(i, 2), &format!("coverage, {splatting:?}"))
     };
     assert_agree(all.into_iter().enumerate().flat_map(by).collect());
 }
 
-/// The first filter and normalization with which a footprint and a visibility go together.
-fn together(footprint: Footprint, visibility: Visibility) -> Option<Splatting> {
+/// The first filter and normalization that a footprint and a visibility can be combined with.
+fn combined(footprint: Footprint, visibility: Visibility) -> Option<Splatting> {
     let filters = [Filter::Screen, Filter::Object, Filter::None];
     let each = filters.into_iter().flat_map(|filter| {
         [Normalization::Pixel, Normalization::None].map(|normalization| Splatting {
@@ -124,17 +124,21 @@ fn every_footprint_under_every_visibility_with_coverage() {
         Footprint::Square,
     ];
     let visibilities = [Visibility::Ray, Visibility::Axis, Visibility::Nearest];
-    let all = footprints.iter().flat_map(|f| visibilities.iter().filter_map(|v| together(*f, *v)));
+    let all = footprints.iter().flat_map(|f| visibilities.iter().filter_map(|v| combined(*f, *v)));
     let by = |(i, splatting): (usize, Splatting)| {
         let mut cases =
             with_axes(|case| Settings { splatting, alpha: Alpha::Coverage, ..case.settings.clone() });
-        // Three visibilities of each footprint follow each other: each of the six meets both.
+        // Each footprint has three consecutive visibilities: each of the six sees both cases.
         let both = ["clipped", "ellipses"];
         let some = (i + i / 3) % 2;
         cases.retain(|case| both[if_whole(0..2, some..some + 1)].contains(&case.name));
         assert_eq!(cases.len(), if_whole(2, 1));
-        // By the other rasterizer where the next one meets the same case.
-        failures(&cases, &by_one(views_in_turn(i + i / 3), i / 2), &format!("coverage, {splatting:?}"))
+        // The next combination uses the same case with the other rasterizer.
+        failures(
+            &cases,
+            &one_rasterizer(rotated_views(i + i / 3), i / 2),
+            &format!("coverage, {splatting:?}"),
+        )
     };
     let all: Vec<Splatting> = all.collect();
     assert_eq!(all.len(), 19);
@@ -145,7 +149,7 @@ fn every_footprint_under_every_visibility_with_coverage() {
 #[test]
 fn every_case_by_other_axes() {
     let conic = Splatting::default();
-    let alone = Splatting { visibility: Visibility::Nearest, normalization: Normalization::None, ..conic };
+    let nearest = Splatting { visibility: Visibility::Nearest, normalization: Normalization::None, ..conic };
     let [sprites, object] = [sprites::METHOD, object_ewa::METHOD].map(|method| method.splatting);
     let all = [
         Splatting { footprint: Footprint::Affine, ..conic },
@@ -158,17 +162,17 @@ fn every_case_by_other_axes() {
         Splatting { normalization: Normalization::Surfel, footprint: Footprint::Disc, ..object },
         Splatting { normalization: Normalization::Surfel, ..sprites },
         Splatting { filter: Filter::Screen, shade: Shade::Pixel, ..sprites },
-        alone,
-        Splatting { footprint: Footprint::Square, filter: Filter::None, ..alone },
+        nearest,
+        Splatting { footprint: Footprint::Square, filter: Filter::None, ..nearest },
     ];
     let by = |(i, splatting): (usize, Splatting)| {
         let cases = with_axes(|case| Settings { splatting, ..case.settings.clone() });
-        failures(&cases, &by_one(some_in_turn(i, 6), i), &format!("{splatting:?}"))
+        failures(&cases, &one_rasterizer(sampled_views(i, 6), i), &format!("{splatting:?}"))
     };
     assert_agree(all.into_iter().enumerate().flat_map(by).collect());
 }
 
-/// All cases, rendered in another way.
+/// All cases with other settings.
 fn with_axes(settings: impl Fn(&Case) -> Settings) -> Vec<Case> {
     let mut cases = cases();
     for case in &mut cases {
@@ -179,42 +183,42 @@ fn with_axes(settings: impl Fn(&Case) -> Settings) -> Vec<Case> {
     cases
 }
 
-/// Random normalization weights, of every third surfel one at each corner.
+/// Random normalization weights; every third surfel has one per corner.
 fn weights(count: usize) -> Weights {
     let mut random = Random(99);
     let mut weight = || (0.05 + 0.4 * random.unit()) as f32;
     Weights::collect((0..count).map(|i| (weight(), i.is_multiple_of(3).then(|| [(); 4].map(|()| weight())))))
 }
 
-/// By which cameras and rasterizers case `number` is rendered.
+/// Cameras and rasterizers of case `number`.
 type Views = dyn Fn(usize) -> Vec<(usize, Rasterizer)>;
 
 const RASTERIZERS: [Rasterizer; 2] = [Rasterizer::Draw, Rasterizer::Compute];
 
-/// By every camera and either rasterizer.
+/// Every camera with both rasterizers.
 fn all_views(_: usize) -> Vec<(usize, Rasterizer)> {
     (0..3).flat_map(|camera| RASTERIZERS.map(|rasterizer| (camera, rasterizer))).collect()
 }
 
-/// The same in the whole matrix; else by one camera and either rasterizer, so that every one of several ways to render meets every case, and
-/// three ways in turn meet it through every camera.
-fn views_in_turn(way: usize) -> impl Fn(usize) -> Vec<(usize, Rasterizer)> {
+/// `all_views` in the full matrix; otherwise one camera with both rasterizers, such that three consecutive values of `way` cover all
+/// cameras.
+fn rotated_views(way: usize) -> impl Fn(usize) -> Vec<(usize, Rasterizer)> {
     move |number| {
         let camera = (number + way) % 3;
         if_whole(all_views(number), RASTERIZERS.map(|rasterizer| (camera, rasterizer)).to_vec())
     }
 }
 
-/// The same in the whole matrix; else one of `share` cases, in the next way the next ones, by one camera and either rasterizer.
-fn some_in_turn(way: usize, share: usize) -> impl Fn(usize) -> Vec<(usize, Rasterizer)> {
+/// `all_views` in the full matrix; otherwise one in `share` cases, alternating with `way`, from one camera with both rasterizers.
+fn sampled_views(way: usize, share: usize) -> impl Fn(usize) -> Vec<(usize, Rasterizer)> {
     move |number| match (number + way).is_multiple_of(share) {
-        true => views_in_turn(way / share)(number),
+        true => rotated_views(way / share)(number),
         false => if_whole(all_views(number), Vec::new()),
     }
 }
 
-/// All of the same in the whole matrix; else those by one rasterizer: by the other the next way.
-fn by_one(
+/// All of `views` in the full matrix; otherwise those with one rasterizer, alternating with `way`.
+fn one_rasterizer(
     views: impl Fn(usize) -> Vec<(usize, Rasterizer)>,
     way: usize,
 ) -> impl Fn(usize) -> Vec<(usize, Rasterizer)> {
@@ -229,7 +233,7 @@ fn assert_agree(failed: Vec<String>) {
     assert!(failed.is_empty(), "{failed:#?}");
 }
 
-/// Which of the `views` of each case are not the reference's.
+/// Views that differ from the reference.
 fn failures(cases: &[Case], views: &Views, how: &str) -> Vec<String> {
     let Some(device) = device(DeviceLimits::default()) else { return Vec::new() };
     let renderers = Renderers::new(&device);
@@ -239,23 +243,23 @@ fn failures(cases: &[Case], views: &Views, how: &str) -> Vec<String> {
             let i = by_camera[0].0;
             let view = View::new(case, case.cameras[i]);
             for &(_, rasterizer) in by_camera {
-                let verdict = view.judge(&renderers, rasterizer, &case.surfels, &case.settings);
-                let doubt = verdict.ambiguous as f64 / verdict.object_pixels as f64;
+                let comparison = view.compare(&renderers, rasterizer, &case.surfels, &case.settings);
+                let ambiguous = comparison.ambiguous as f64 / comparison.object_pixels as f64;
                 println!(
-                    "{how}, {} {i} {rasterizer:?}: {} of {} object pixels failed, {:.2} % in doubt, worst {:?}",
+                    "{how}, {} {i} {rasterizer:?}: {} of {} object pixels failed, {:.2} % ambiguous, worst {:?}",
                     case.name,
-                    verdict.failed,
-                    verdict.object_pixels,
-                    100.0 * doubt,
-                    verdict.worst
+                    comparison.failed,
+                    comparison.object_pixels,
+                    100.0 * ambiguous,
+                    comparison.worst
                 );
-                if !verdict.passed() || doubt > MOST_DOUBT {
-                    let first = verdict.failures.first();
+                if !comparison.passed() || ambiguous > MOST_AMBIGUOUS {
+                    let first = comparison.failures.first();
                     failed.push(format!(
-                        "{how}, {} {i} {rasterizer:?}: {} failed, {:.2} % in doubt, {first:?}",
+                        "{how}, {} {i} {rasterizer:?}: {} failed, {:.2} % ambiguous, {first:?}",
                         case.name,
-                        verdict.failed,
-                        100.0 * doubt
+                        comparison.failed,
+                        100.0 * ambiguous
                     ));
                 }
             }
@@ -277,22 +281,22 @@ fn small_mutations_fail() {
         let small = Settings { widen: Widen::Small, ..settings.clone() };
         let moved = moved(&case.surfels, &view.camera, 0.02, case.size);
         for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
-            let failed = |surfels, settings| view.judge(&renderers, rasterizer, surfels, settings).failed;
+            let failed = |surfels, settings| view.compare(&renderers, rasterizer, surfels, settings).failed;
             let [h, s, e] = [&lowpass, &small, &epsilon].map(|settings| failed(&case.surfels, settings));
             let c = failed(&moved, settings);
             println!(
                 "{} {rasterizer:?}: H × 1.01 {h}, only small widened {s}, ε × 0.5 {e}, centres by 0.02 px {c} pixels",
                 case.name
             );
-            // Beside the filter these vanish, and all are as wide as that either way.
-            let alike = case.name == "sub-pixel";
-            assert!(h > 0 && (s > 0 || alike) && e > 0 && c > 0, "{}: a mutation went unseen", case.name);
+            // Splats far below the filter: these mutations have no effect.
+            let tiny = case.name == "sub-pixel";
+            assert!(h > 0 && (s > 0 || tiny) && e > 0 && c > 0, "{}: a mutation was not detected", case.name);
         }
     }
     assert_silent(&device);
 }
 
-/// The α of discs that are a little larger, in a picture that is right otherwise.
+/// Takes α from slightly larger discs, in a picture that is otherwise correct.
 #[test]
 #[ignore = "takes long: tools/test --all"]
 fn another_coverage_fails() {
@@ -300,7 +304,7 @@ fn another_coverage_fails() {
     let renderers = Renderers::new(&device);
     let cases =
         with_axes(|case| Settings { alpha: Alpha::Coverage, background: None, ..case.settings.clone() });
-    let mut noticed = 0;
+    let mut detected_cases = 0;
     for case in &cases {
         let view = View::new(case, case.cameras[0]);
         let mut larger = case.surfels.clone();
@@ -316,13 +320,13 @@ fn another_coverage_fails() {
             let partial: usize = picture.colour.iter_mut().zip(&other.colour).map(differ).sum();
             let failed = view.expected.compare(&picture).unwrap().failed;
             println!("{} {rasterizer:?}: radii × 1.02 {failed} of {partial} pixels", case.name);
-            // What is beside a pixel covers one sample of it, whatever its size.
-            let seen = failed > partial / 50 || partial < 100 || case.name == "sub-pixel";
-            assert!(seen, "{}: a mutation went unseen", case.name);
-            noticed += usize::from(failed > 0);
+            // Splats next to a pixel cover one sample of it, whatever their size.
+            let detected = failed > partial / 50 || partial < 100 || case.name == "sub-pixel";
+            assert!(detected, "{}: a mutation was not detected", case.name);
+            detected_cases += usize::from(failed > 0);
         }
     }
-    assert!(noticed >= 8, "{noticed}");
+    assert!(detected_cases >= 8, "{detected_cases}");
     assert_silent(&device);
 }
 
@@ -341,10 +345,10 @@ fn other_clip_lines_fail() {
         let convex = changed(&|clip| clip.concave = false);
         let whole = Surfels { clips: None, ..case.surfels.clone() };
         for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
-            let failed = |surfels| view.judge(&renderers, rasterizer, surfels, &case.settings).failed;
+            let failed = |surfels| view.compare(&renderers, rasterizer, surfels, &case.settings).failed;
             let [m, c, w] = [&moved, &convex, &whole].map(failed);
             println!("{} {rasterizer:?}: lines moved {m}, all convex {c}, none {w} pixels", case.name);
-            assert!(m > 0 && c > 0 && w > 0, "{}: a mutation went unseen", case.name);
+            assert!(m > 0 && c > 0 && w > 0, "{}: a mutation was not detected", case.name);
         }
     }
     assert_silent(&device);
@@ -357,30 +361,30 @@ fn other_shapes_and_sides_fail() {
     for case in cases().iter().filter(|case| case.surfels.ellipses.is_some()) {
         let view = View::new(case, case.cameras[0]);
         let slimmer = reshaped(&case.surfels, |e, _| Ellipse { aspect: 0.99 * e.aspect, ..e });
-        let turned =
+        let rotated =
             reshaped(&case.surfels, |e, n| Ellipse { major: e.major + 0.01 * n.cross(e.major), ..e });
         let one_sided = Surfels { two_sided: None, ..case.surfels.clone() };
         for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
-            let failed = |surfels| view.judge(&renderers, rasterizer, surfels, &case.settings).failed;
-            let [a, t, o] = [&slimmer, &turned, &one_sided].map(failed);
+            let failed = |surfels| view.compare(&renderers, rasterizer, surfels, &case.settings).failed;
+            let [a, t, o] = [&slimmer, &rotated, &one_sided].map(failed);
             println!(
-                "{} {rasterizer:?}: aspect × 0.99 {a}, turned by 0.01 {t}, one-sided {o} pixels",
+                "{} {rasterizer:?}: aspect × 0.99 {a}, rotated by 0.01 {t}, one-sided {o} pixels",
                 case.name
             );
-            let sides_seen = (o > 0) == case.surfels.two_sided.is_some();
-            assert!(a > 0 && t > 0 && sides_seen, "{}: a mutation went unseen", case.name);
+            let sides_detected = (o > 0) == case.surfels.two_sided.is_some();
+            assert!(a > 0 && t > 0 && sides_detected, "{}: a mutation was not detected", case.name);
         }
     }
     assert_silent(&device);
 }
 
-/// Every ellipse changed by `by(ellipse, normal)`.
+/// Changes every ellipse by `by(ellipse, normal)`.
 fn reshaped(surfels: &Surfels, by: impl Fn(Ellipse, Vec3) -> Ellipse) -> Surfels {
     let pairs = surfels.ellipses.iter().flatten().zip(&surfels.normals);
     Surfels { ellipses: Some(pairs.map(|(e, n)| by(*e, *n)).collect()), ..surfels.clone() }
 }
 
-/// Every centre moved along the picture's x axis by `by` px.
+/// Moves every centre along the image's x axis by `by` px.
 fn moved(surfels: &Surfels, camera: &Camera, by: f64, size: [u32; 2]) -> Surfels {
     let right = camera.view.row(0).truncate();
     let focal = 0.5 * f64::from(size[0]) * camera.projection.x_axis.x;

@@ -271,12 +271,12 @@ fn one_point_or_equal_values_have_a_plot() {
 fn stale_results_are_marked_everywhere_and_fresh_ones_nowhere() {
     let results = plausible();
     let (fresh, stale) = (page(&results, CODE), page(&results, "other"));
-    let said = "Measured by commit 559aa66d0c on 2026-11-21; the code has changed since";
+    let expected = "Measured by commit 559aa66d0c on 2026-11-21; the code has changed since";
     assert!(!fresh.contains("class=\"stale\"") && !fresh.contains("changed since"));
     // At the top, and in each section except the glossary, which belongs to no session.
-    assert_eq!(stale.matches(said).count(), stale.matches("<section").count());
+    assert_eq!(stale.matches(expected).count(), stale.matches("<section").count());
     assert!(!table(&results, CODE, NOW).contains("STALE"));
-    assert!(table(&results, "other", NOW).contains(&format!("STALE: {said}")));
+    assert!(table(&results, "other", NOW).contains(&format!("STALE: {expected}")));
     let column = |code| {
         let text = csv::runs(&results, code).unwrap();
         let mut reader = ::csv::Reader::from_reader(text.as_bytes());

@@ -41,7 +41,7 @@ impl Drawn {
     }
 }
 
-/// Discs, maybe of aspects from 0.1 to 1, anywhere in and around the picture, from 1/100 px to 1000 px, turned away by 0° to 89.9999°.
+/// Discs, optionally of aspects from 0.1 to 1, anywhere in and around the picture, from 1/100 px to 1000 px, turned away by 0° to 89.9999°.
 fn discs(camera: &Camera, elliptical: bool) -> Surfels {
     let mut random = Random(11);
     let mut surfels = Surfels::default();

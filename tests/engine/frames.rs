@@ -1,4 +1,4 @@
-//! Frames: what they make and do not make, the fallbacks of lesser devices, sizes, the two rasterizers side by side.
+//! Frames: resources they create, fallbacks of limited devices, sizes, and both rasterizers compared.
 
 use crate::support::gpu::{assert_silent, device, render};
 use crate::support::placing::{rich, weighted};
@@ -29,12 +29,12 @@ fn camera(size: [u32; 2]) -> Camera {
     Camera::look_at(eye, DVec3::ZERO, DVec3::Y, 45f64.to_radians(), aspect, 1e-3).unwrap()
 }
 
-fn everything(rasterizer: Rasterizer) -> RenderOptions {
+fn all_outputs(rasterizer: Rasterizer) -> RenderOptions {
     let outputs = Outputs { normal: true, depth: true, id: false };
     RenderOptions { size: SIZE, outputs, rasterizer: Some(rasterizer), ..Default::default() }
 }
 
-/// Whether `picture` is the reference's of the sphere with default settings.
+/// Whether `picture` matches the reference of the sphere with default settings.
 fn agrees(picture: &Picture, surfels: &Surfels) -> bool {
     let settings = Settings::default();
     let expected = Expected::new(surfels, &camera(SIZE), SIZE, &settings, &Tolerance::default()).unwrap();
@@ -46,15 +46,15 @@ fn picture_on(device: &Arc<Device>, surfels: &Surfels, options: RenderOptions) -
 }
 
 #[test]
-fn a_second_frame_makes_nothing() {
+fn a_second_frame_creates_nothing() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
         let scene = Scene::upload(&device, &sphere(5_000)).unwrap();
-        let options = RenderOptions { profile: true, count: true, ..everything(rasterizer) };
+        let options = RenderOptions { profile: true, count: true, ..all_outputs(rasterizer) };
         let mut renderer = Renderer::new(&device, options).unwrap();
         renderer.render_picture(&scene, &camera(SIZE), &Settings::default()).unwrap();
         let before = device.usage();
-        // Neither the camera's place nor numbers that shaders read from memory are reasons to make anything.
+        // Camera positions and values in uniforms create no resources.
         let settings =
             Settings { lowpass: 0.3, epsilon: 2.0, background: Some([0.5; 3]), ..Default::default() };
         let moved = Camera { view: camera(SIZE).view * glam::DMat4::from_rotation_y(1.0), ..camera(SIZE) };
@@ -65,7 +65,7 @@ fn a_second_frame_makes_nothing() {
 }
 
 #[test]
-fn pipelines_are_few_and_made_once_a_variant() {
+fn pipelines_are_created_once_per_variant() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let scene = Scene::upload(&device, &sphere(2_000)).unwrap();
     let lights = DirectionalLight { to_light: [0.0, 1.0, 0.0], radiance: [0.2; 3] };
@@ -82,7 +82,7 @@ fn pipelines_are_few_and_made_once_a_variant() {
         Settings { widen: Widen::All, ..Default::default() },
         lit,
     ];
-    // What the constants that each module reads tell apart.
+    // Distinct values of the constants that each module reads.
     for (rasterizer, most) in [(Rasterizer::Draw, 17), (Rasterizer::Compute, 16)] {
         let options = RenderOptions { size: SIZE, rasterizer: Some(rasterizer), ..Default::default() };
         let mut renderer = Renderer::new(&device, options).unwrap();
@@ -98,7 +98,7 @@ fn pipelines_are_few_and_made_once_a_variant() {
 }
 
 #[test]
-fn passes_and_targets_are_those_that_are_told() {
+fn passes_and_targets_match_the_plan() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let scene = Scene::upload(&device, &sphere(2_000)).unwrap();
     let pixels = f64::from(SIZE[0] * SIZE[1]);
@@ -119,33 +119,33 @@ fn passes_and_targets_are_those_that_are_told() {
             let mut renderer = Renderer::new(&device, options).unwrap();
             let report = renderer.render(&scene, &camera(SIZE), &settings).unwrap();
             let plan = FramePlan::new(&[scene.streams()], true, &settings, &options, rasterizer);
-            let mut told = plan.passes;
-            // Passes of one name are timed together.
+            let mut planned = plan.passes;
+            // Passes of one name share a timer.
             for again in ["footprint", "boxes"] {
-                if told.iter().filter(|pass| **pass == again).count() > 1 {
-                    let last = told.iter().rposition(|pass| *pass == again).unwrap();
-                    told.remove(last);
+                if planned.iter().filter(|pass| **pass == again).count() > 1 {
+                    let last = planned.iter().rposition(|pass| *pass == again).unwrap();
+                    planned.remove(last);
                 }
             }
             let timed: Vec<_> = report.pass_times.iter().map(|time| time.label).collect();
             let timed: Vec<_> = timed.into_iter().filter(|label| *label != "clear").collect();
-            assert_eq!(timed, told, "{rasterizer:?}");
+            assert_eq!(timed, planned, "{rasterizer:?}");
             let per_pixel = plan.targets;
             let names: Vec<_> = per_pixel.iter().map(|(name, _)| *name).collect();
             let mut made: Vec<_> = renderer.targets().iter().map(|target| target.name).collect();
-            made.sort_by_key(|name| names.iter().position(|told| told == name));
+            made.sort_by_key(|name| names.iter().position(|planned| planned == name));
             assert_eq!(made, names, "{rasterizer:?}");
             // Allocations are rounded up.
             let bytes: f64 = renderer.targets().iter().map(|target| target.bytes as f64).sum();
-            let told: f64 = per_pixel.iter().map(|(_, bytes)| bytes * pixels).sum();
-            assert!(bytes >= told && bytes < 1.1 * told + 65_536.0, "{bytes} for {told}");
+            let planned: f64 = per_pixel.iter().map(|(_, bytes)| bytes * pixels).sum();
+            assert!(bytes >= planned && bytes < 1.1 * planned + 65_536.0, "{bytes} for {planned}");
         }
     }
     assert_silent(&device);
 }
 
 #[test]
-fn streams_and_splats_are_those_that_are_told() {
+fn streams_and_splats_match_the_plan() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let bare = sphere(2_000);
     let circles = Surfels { colours: None, ..bare.clone() };
@@ -160,9 +160,9 @@ fn streams_and_splats_are_those_that_are_told() {
     ];
     for (surfels, bytes) in kinds {
         let scene = Scene::upload(&device, &surfels).unwrap();
-        let told: u64 = scene.streams().per_surfel().iter().map(|(_, bytes)| bytes).sum();
-        assert_eq!(told, bytes);
-        // Weights are rounded up to what ranges begin at.
+        let planned: u64 = scene.streams().per_surfel().iter().map(|(_, bytes)| bytes).sum();
+        assert_eq!(planned, bytes);
+        // Weights are padded to the alignment of ranges.
         assert!((2_000 * bytes..2_000 * bytes + 256).contains(&scene.bytes()), "{}", scene.bytes());
     }
     let scene = Scene::upload(&device, &bare).unwrap();
@@ -172,7 +172,7 @@ fn streams_and_splats_are_those_that_are_told() {
         renderer.render(&scene, &camera(SIZE), &method.settings()).unwrap();
         let rasterizer = renderer.rasterizer().unwrap();
         let plan = FramePlan::new(&[scene.streams()], true, &method.settings(), &options, rasterizer);
-        // The levels of boxes above the splats are a seventh of theirs.
+        // Boxes above the splats take a seventh of the splats' boxes.
         let made = renderer.splat_bytes();
         assert!((2_000 * plan.splat..=2_000 * (plan.splat + 4) + 4096).contains(&made), "{made}");
     }
@@ -180,13 +180,13 @@ fn streams_and_splats_are_those_that_are_told() {
 }
 
 #[test]
-fn progressive_frames_make_nothing_once_both_kinds_are_made() {
+fn progressive_frames_create_nothing_after_both_variants() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let mut surfels = sphere(5_000);
     surfels.weights = Some(Weights::collect((0..5_000).map(|i| (0.2, (i % 9 == 0).then_some([0.2; 4])))));
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
         let scene = Scene::upload(&device, &surfels).unwrap();
-        let mut renderer = Renderer::new(&device, everything(rasterizer)).unwrap();
+        let mut renderer = Renderer::new(&device, all_outputs(rasterizer)).unwrap();
         let mut progressive = Progressive::default();
         let mut frame = |camera: &Camera| {
             let settings = progressive.settings(camera);
@@ -197,7 +197,7 @@ fn progressive_frames_make_nothing_once_both_kinds_are_made() {
             view: camera(SIZE).view * glam::DMat4::from_rotation_y(f64::from(i)),
             ..camera(SIZE)
         };
-        // The first moves, the second rests.
+        // The first frame moves, the second rests.
         let first = [0, 0].map(|i| frame(&turned(i)));
         assert_eq!(first, [Normalization::Surfel, Normalization::Pixel]);
         let before = device.usage();
@@ -213,7 +213,7 @@ fn progressive_frames_make_nothing_once_both_kinds_are_made() {
 fn normalization_by_surfel_needs_weights() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let scene = Scene::upload(&device, &sphere(500)).unwrap();
-    let mut renderer = Renderer::new(&device, everything(Rasterizer::Draw)).unwrap();
+    let mut renderer = Renderer::new(&device, all_outputs(Rasterizer::Draw)).unwrap();
     let refused = renderer.render(&scene, &camera(SIZE), &object_ewa::progressive(true));
     assert!(matches!(refused.err(), Some(Error::Usage(text)) if text.contains("normalization weights")));
     renderer.render(&scene, &camera(SIZE), &object_ewa::progressive(false)).unwrap();
@@ -221,11 +221,11 @@ fn normalization_by_surfel_needs_weights() {
 }
 
 #[test]
-fn nothing_is_left_when_all_is_dropped() {
+fn dropping_frees_all_memory() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let before = device.usage().bytes;
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
-        picture_on(&device, &sphere(2_000), everything(rasterizer));
+        picture_on(&device, &sphere(2_000), all_outputs(rasterizer));
     }
     assert_eq!(device.usage().bytes, before);
     assert_silent(&device);
@@ -252,20 +252,20 @@ fn a_scene_without_colour_has_no_colour_target() {
 }
 
 #[test]
-fn many_windows_make_the_same_picture() {
+fn many_chunks_render_the_same_picture() {
     let limits = DeviceLimits { max_storage_buffer_range: Some(1 << 20), ..Default::default() };
     let Some(device) = device(limits) else { return };
     let surfels = sphere(50_000);
     let scene = Scene::upload(&device, &surfels).unwrap();
     assert!(scene.chunks().len() > 2, "one chunk would prove nothing");
-    let picture = picture_on(&device, &surfels, everything(Rasterizer::Draw));
+    let picture = picture_on(&device, &surfels, all_outputs(Rasterizer::Draw));
     assert!(agrees(&picture, &surfels));
     // The compute rasterizer's buffers fit at a smaller size.
-    let small = RenderOptions { size: [128, 96], ..everything(Rasterizer::Compute) };
-    let [drawn, computed] = [Rasterizer::Draw, Rasterizer::Compute].map(|rasterizer| {
+    let small = RenderOptions { size: [128, 96], ..all_outputs(Rasterizer::Compute) };
+    let [raster, compute] = [Rasterizer::Draw, Rasterizer::Compute].map(|rasterizer| {
         picture_on(&device, &surfels, RenderOptions { rasterizer: Some(rasterizer), ..small })
     });
-    assert!(largest_difference(&drawn, &computed) < 1e-5);
+    assert!(largest_difference(&raster, &compute) < 1e-5);
     assert_silent(&device);
 }
 
@@ -292,17 +292,17 @@ fn a_picture_may_be_larger_than_a_storage_buffer() {
 }
 
 #[test]
-fn teams_of_every_kind_make_the_same_picture() {
+fn every_kind_of_tile_workgroup_renders_the_same_picture() {
     let surfels = sphere(5_000);
     let picture = |limits: DeviceLimits| {
         let device = device(limits)?;
-        let picture = picture_on(&device, &surfels, everything(Rasterizer::Compute));
+        let picture = picture_on(&device, &surfels, all_outputs(Rasterizer::Compute));
         assert_silent(&device);
         Some(picture)
     };
     let Some(subgroups) = picture(DeviceLimits::default()) else { return };
     assert!(agrees(&subgroups, &surfels));
-    // By shared memory, and from storage buffers.
+    // With shared memory, and with storage buffers.
     for limits in [
         DeviceLimits { subgroup_size: Some(0), ..Default::default() },
         DeviceLimits { max_texels: Some(4 * 4_999), ..Default::default() },
@@ -312,7 +312,7 @@ fn teams_of_every_kind_make_the_same_picture() {
 }
 
 #[test]
-fn splats_that_fit_no_buffer_of_the_device_are_drawn() {
+fn splats_beyond_buffer_limits_take_the_raster_path() {
     let limits = DeviceLimits {
         max_storage_buffer_range: Some(1 << 20),
         max_texels: Some(1 << 16),
@@ -325,40 +325,40 @@ fn splats_that_fit_no_buffer_of_the_device_are_drawn() {
     let mut renderer = Renderer::new(&device, options).unwrap();
     renderer.render(&scene, &camera([64; 2]), &Settings::default()).unwrap();
     assert_eq!(renderer.rasterizer(), Some(Rasterizer::Draw));
-    let computed = RenderOptions { rasterizer: Some(Rasterizer::Compute), ..options };
-    let mut computed = Renderer::new(&device, computed).unwrap();
-    let refused = computed.render(&scene, &camera([64; 2]), &Settings::default());
+    let compute = RenderOptions { rasterizer: Some(Rasterizer::Compute), ..options };
+    let mut compute = Renderer::new(&device, compute).unwrap();
+    let refused = compute.render(&scene, &camera([64; 2]), &Settings::default());
     assert!(matches!(refused.err(), Some(Error::Usage(text)) if text.contains("65536 texels")));
     assert_silent(&device);
 }
 
 #[test]
-fn tiles_on_which_splats_crowd_have_all_of_them() {
+fn crowded_tiles_show_all_splats() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let surfels = sphere(70_000);
     let size = [16; 2];
     for name in ["perspective-ewa", "sprites-unfiltered"] {
         for alpha in [Alpha::Mask, Alpha::Coverage] {
             let settings = Settings { alpha, ..Method::named(name).unwrap().settings() };
-            let [drawn, computed] = [Rasterizer::Draw, Rasterizer::Compute].map(|rasterizer| {
-                let options = RenderOptions { size, ..everything(rasterizer) };
+            let [raster, compute] = [Rasterizer::Draw, Rasterizer::Compute].map(|rasterizer| {
+                let options = RenderOptions { size, ..all_outputs(rasterizer) };
                 render(&device, &surfels, &camera(size), &settings, options)
             });
-            assert!(drawn.colour.iter().filter(|colour| colour[3] > 0.0).count() > 50, "{name}");
-            let apart = largest_difference(&drawn, &computed);
-            assert!(apart < 1e-4, "{name}, {alpha:?}: {apart}");
+            assert!(raster.colour.iter().filter(|colour| colour[3] > 0.0).count() > 50, "{name}");
+            let difference = largest_difference(&raster, &compute);
+            assert!(difference < 1e-4, "{name}, {alpha:?}: {difference}");
         }
     }
     assert_silent(&device);
 }
 
 #[test]
-fn split_stages_make_the_same_picture() {
+fn split_passes_render_the_same_picture() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let scene = Scene::upload(&device, &sphere(5_000)).unwrap();
     for alpha in [Alpha::Mask, Alpha::Coverage] {
         let [fused, split] = [false, true].map(|split| {
-            let options = RenderOptions { split, profile: true, ..everything(Rasterizer::Compute) };
+            let options = RenderOptions { split, profile: true, ..all_outputs(Rasterizer::Compute) };
             let settings = Settings { alpha, ..Default::default() };
             let mut renderer = Renderer::new(&device, options).unwrap();
             let (picture, report) = renderer.render_picture(&scene, &camera(SIZE), &settings).unwrap();
@@ -383,7 +383,7 @@ fn split_stages_make_the_same_picture() {
 }
 
 #[test]
-fn without_writes_from_fragments_coverage_is_computed() {
+fn without_fragment_writes_coverage_takes_the_compute_path() {
     let limits = DeviceLimits { fragment_writes: Some(false), ..Default::default() };
     let Some(device) = device(limits.clone()) else { return };
     let surfels = sphere(5_000);
@@ -397,10 +397,10 @@ fn without_writes_from_fragments_coverage_is_computed() {
         renderer.render(&scene, &camera(SIZE), settings).map(|_| renderer.rasterizer())
     };
     assert_eq!(run(&device, None, &settings).unwrap(), Some(Rasterizer::Compute));
-    let drawn = Some(Rasterizer::Draw);
-    assert_eq!(run(&device, drawn, &Settings::default()).unwrap(), drawn);
+    let raster = Some(Rasterizer::Draw);
+    assert_eq!(run(&device, raster, &Settings::default()).unwrap(), raster);
     let lacks = |refused: Result<_, Error>| matches!(refused.err(), Some(Error::Usage(text)) if text.contains("fragmentStoresAndAtomics"));
-    assert!(lacks(run(&device, drawn, &settings)));
+    assert!(lacks(run(&device, raster, &settings)));
     assert_silent(&device);
     let neither = self::device(DeviceLimits { max_storage_buffer_range: Some(1 << 19), ..limits }).unwrap();
     assert!(lacks(run(&neither, None, &settings)));
@@ -408,11 +408,11 @@ fn without_writes_from_fragments_coverage_is_computed() {
 }
 
 #[test]
-fn coverage_is_there_where_it_is_asked_for() {
+fn coverage_exists_only_if_requested() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let scene = Scene::upload(&device, &sphere(5_000)).unwrap();
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
-        let mut renderer = Renderer::new(&device, everything(rasterizer)).unwrap();
+        let mut renderer = Renderer::new(&device, all_outputs(rasterizer)).unwrap();
         let mut frame = |alpha| {
             let settings = Settings { alpha, ..Default::default() };
             let picture = renderer.render_picture(&scene, &camera(SIZE), &settings).unwrap().0;
@@ -420,7 +420,7 @@ fn coverage_is_there_where_it_is_asked_for() {
             (target.map(|target| target.bytes), picture.colour.iter().any(|c| c[3] > 0.0 && c[3] < 1.0))
         };
         assert_eq!(frame(Alpha::Mask), (None, false), "{rasterizer:?}");
-        // Teams have it in registers.
+        // On the tile path it is in registers.
         let target = (rasterizer == Rasterizer::Draw).then_some(4 * 256 * 192);
         assert_eq!(frame(Alpha::Coverage), (target, true), "{rasterizer:?}");
     }
@@ -428,16 +428,16 @@ fn coverage_is_there_where_it_is_asked_for() {
 }
 
 #[test]
-fn without_float32_blending_sums_are_half_floats_or_computed() {
+fn without_float32_blending_sums_are_half_floats_or_on_the_compute_path() {
     let Some(device) = device(DeviceLimits { blend_float32: Some(false), ..Default::default() }) else {
         return;
     };
     let surfels = sphere(5_000);
-    let renderer = Renderer::new(&device, everything(Rasterizer::Draw)).unwrap();
+    let renderer = Renderer::new(&device, all_outputs(Rasterizer::Draw)).unwrap();
     assert_eq!(renderer.precision(), Precision::Half);
-    let full = picture_on(&device, &surfels, everything(Rasterizer::Compute));
-    assert!(agrees(&full, &surfels), "computing needs no blending");
-    let half = picture_on(&device, &surfels, everything(Rasterizer::Draw));
+    let full = picture_on(&device, &surfels, all_outputs(Rasterizer::Compute));
+    assert!(agrees(&full, &surfels), "the compute path needs no blending");
+    let half = picture_on(&device, &surfels, all_outputs(Rasterizer::Draw));
     let error = largest_difference(&half, &full);
     println!("largest error of 16-bit sums: {error:.1e}");
     // 11 bits of mantissa; truncated sums of some twenty splats, normalised.
@@ -471,18 +471,19 @@ fn too_few_storage_buffers_are_an_error() {
     assert_silent(&device);
 }
 
-/// The number in the guide's chapters on methods and embedding: a scene with all that a surfel can have, by every method, counted, with coverage.
+/// The limit stated in the guide's chapters on methods and embedding: a scene with all streams of surfels, by every method, with counts and
+/// coverage.
 #[test]
-fn thirteen_storage_buffers_are_enough_and_no_fewer() {
+fn thirteen_storage_buffers_are_required() {
     let surfels = weighted(rich(300));
-    for (most, is_enough) in [(13, true), (12, false)] {
+    for (most, is_sufficient) in [(13, true), (12, false)] {
         let Some(device) = device(DeviceLimits { max_storage_buffers: Some(most), ..Default::default() })
         else {
             return;
         };
         let scene = Scene::upload(&device, &surfels).unwrap();
         let frame = |method: &Method, rasterizer, alpha| {
-            let options = RenderOptions { size: [64, 64], count: true, ..everything(rasterizer) };
+            let options = RenderOptions { size: [64, 64], count: true, ..all_outputs(rasterizer) };
             let own = method.settings().splatting;
             let normalization = match (method.pull_push, own.normalization) {
                 (None, Normalization::Pixel) => Normalization::Surfel,
@@ -500,26 +501,26 @@ fn thirteen_storage_buffers_are_enough_and_no_fewer() {
         });
         let made: Result<Vec<_>, Error> =
             choices.map(|(method, rasterizer, alpha)| frame(method, rasterizer, alpha)).collect();
-        assert_eq!(made.is_ok(), is_enough, "{most}: {made:?}");
+        assert_eq!(made.is_ok(), is_sufficient, "{most}: {made:?}");
         assert_silent(&device);
     }
 }
 
 #[test]
-fn every_size_that_the_device_has_works_and_others_are_refused() {
+fn sizes_within_the_limits_work_and_others_are_rejected() {
     let Some(device) = device(DeviceLimits { max_image_side: Some(1500), ..Default::default() }) else {
         return;
     };
     let surfels = sphere(2_000);
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
         for size in [[1, 1], [1, 301], [1500, 1], [1500, 3], [127, 65]] {
-            let picture = picture_on(&device, &surfels, RenderOptions { size, ..everything(rasterizer) });
+            let picture = picture_on(&device, &surfels, RenderOptions { size, ..all_outputs(rasterizer) });
             assert_eq!(picture.colour.len() as u32, size[0] * size[1]);
             assert!(picture.colour.iter().flatten().all(|c| c.is_finite()), "{rasterizer:?} {size:?}");
-            assert!(picture.colour.iter().any(|c| c[3] > 0.0), "{rasterizer:?} {size:?}: nothing to see");
+            assert!(picture.colour.iter().any(|c| c[3] > 0.0), "{rasterizer:?} {size:?}: an empty picture");
         }
         for size in [[0, 5], [5, 0], [1501, 5], [5, 1501]] {
-            let refused = Renderer::new(&device, RenderOptions { size, ..everything(rasterizer) });
+            let refused = Renderer::new(&device, RenderOptions { size, ..all_outputs(rasterizer) });
             assert!(
                 matches!(refused.err(), Some(Error::Usage(text)) if text.contains("1500x1500")),
                 "{size:?}"
@@ -534,12 +535,12 @@ fn repeated_frames_are_the_same_picture() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let scene = Scene::upload(&device, &sphere(20_000)).unwrap();
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
-        let mut renderer = Renderer::new(&device, everything(rasterizer)).unwrap();
+        let mut renderer = Renderer::new(&device, all_outputs(rasterizer)).unwrap();
         let settings = Settings { alpha: Alpha::Coverage, ..Default::default() };
         let mut frame = || renderer.render_picture(&scene, &camera(SIZE), &settings).unwrap().0;
         let first = frame();
         for _ in 0..10 {
-            // Atomic sums come in any order, so their last bits may differ; a missing barrier would show far more.
+            // The order of atomic sums varies the last bits; a missing barrier would differ far more.
             assert!(largest_difference(&frame(), &first) < 1e-5, "{rasterizer:?}");
         }
     }
@@ -547,7 +548,7 @@ fn repeated_frames_are_the_same_picture() {
 }
 
 #[test]
-fn numbers_that_are_none_are_culled_and_counted() {
+fn non_finite_surfels_are_culled_and_counted() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let whole = sphere(3_000);
     let mut broken = whole.clone();
@@ -567,7 +568,7 @@ fn numbers_that_are_none_are_culled_and_counted() {
     broken.colours = None;
     let whole = Surfels { colours: None, ..whole };
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
-        let options = RenderOptions { count: true, ..everything(rasterizer) };
+        let options = RenderOptions { count: true, ..all_outputs(rasterizer) };
         let mut renderer = Renderer::new(&device, options).unwrap();
         let scene = Scene::upload(&device, &broken).unwrap();
         let (picture, report) = renderer.render_picture(&scene, &camera(SIZE), &Settings::default()).unwrap();
@@ -578,7 +579,7 @@ fn numbers_that_are_none_are_culled_and_counted() {
     assert_silent(&device);
 }
 
-/// Over all channels of all pixels.
+/// Largest difference over all channels of all pixels.
 fn largest_difference(a: &Picture, b: &Picture) -> f32 {
     assert_eq!(a.size, b.size);
     let pairs = a.colour.iter().flatten().zip(b.colour.iter().flatten());

@@ -66,7 +66,7 @@ fn check(sweep: &Sweep, point: &SweepPoint) {
     assert!([a.colour, a.normal, a.depth, point.value].into_iter().all(f64::is_finite), "{at}");
     assert!(point.faults.is_none() && a.object_pixels > 0, "{at}");
     assert!(a.failed_pixels == 0 || point.is_beyond_float32(), "{at}");
-    // Nothing is excused for nothing; what one method does not hold, another may.
+    // A limit of float32 is noted only where some method fails at that value.
     let float32_limit = |point: &SweepPoint| point.note.split("; ").next().map(str::to_owned);
     let same =
         |other: &&SweepPoint| other.value == point.value && float32_limit(other) == float32_limit(point);
@@ -122,7 +122,7 @@ fn every_case_agrees_or_says_why_not() {
 }
 
 #[test]
-fn what_a_device_refuses_is_told() {
+fn refusals_of_a_device_are_reported() {
     let limits = DeviceLimits { blend_float32: Some(false), max_image_side: Some(300), ..Default::default() };
     let Some(device) = device(limits) else { return };
     let unknown = Options { only: vec!["sizes".into()], ..Default::default() };

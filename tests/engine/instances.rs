@@ -1,5 +1,5 @@
-//! Scenes where they are placed: one that stands as it is makes the frame that it makes alone; placed, and several together, they make the
-//! float64 reference's picture of one cloud.
+//! Instances: an identity placement renders the frame of the scene itself; placed scenes, alone or several, match the float64 reference of
+//! one merged cloud.
 
 use crate::support::gpu::{Renderers, assert_silent, device};
 use crate::support::if_whole;
@@ -18,7 +18,7 @@ use surfel::{
 };
 
 const SIZE: [u32; 2] = [256, 256];
-const BOTH: [Rasterizer; 2] = [Rasterizer::Draw, Rasterizer::Compute];
+const RASTERIZERS: [Rasterizer; 2] = [Rasterizer::Draw, Rasterizer::Compute];
 
 fn perspective() -> Camera {
     Camera::look_at(DVec3::new(2.1, 1.7, 5.0), DVec3::new(0.5, 0.2, 0.0), DVec3::Y, 0.8, 1.0, 0.1).unwrap()
@@ -29,7 +29,7 @@ fn parallel() -> Camera {
     Camera::orthographic(look, 4.4, 1.0, [0.5, 20.0]).unwrap()
 }
 
-/// Depth that rises with distance, to a far plane that cuts something off.
+/// Depth increases with distance; the far plane cuts off a part.
 fn rising() -> Camera {
     let (near, far) = (0.1, 6.0);
     let mut camera = perspective();
@@ -38,12 +38,12 @@ fn rising() -> Camera {
     Camera { reversed: false, ..camera }
 }
 
-/// A method's, with a light beside the headlight.
+/// Settings of a method, with a light in addition to the headlight.
 fn settings(name: &str) -> Settings {
     let settings = Method::named(name).unwrap().settings();
     let to_light = DVec3::new(-0.6, 0.7, 0.4).normalize().as_vec3().to_array();
     let directional = vec![DirectionalLight { to_light, radiance: [0.5, 0.4, 0.3] }];
-    // What is left of it where a merged cloud has colours of bytes.
+    // The albedo of a merged cloud with 8-bit colours.
     let albedo = [((200.0f32 / 255.0 + 0.055) / 1.055).powf(2.4); 3];
     let lighting = Lighting { directional, albedo, ..settings.lighting.clone() };
     Settings { background: None, lighting, ..settings }
@@ -54,18 +54,18 @@ fn options(rasterizer: Rasterizer) -> RenderOptions {
     RenderOptions { size: SIZE, outputs, rasterizer: Some(rasterizer), ..Default::default() }
 }
 
-/// Surfels on the device, each where it is placed.
+/// Uploads surfels, each with its placement.
 fn uploaded(device: &Arc<Device>, parts: &[(&Surfels, DMat4)]) -> Vec<Instance> {
     let upload = |surfels: &Surfels| Arc::new(Scene::upload(device, surfels).unwrap());
     parts.iter().map(|(surfels, transform)| Instance::new(&upload(surfels), *transform)).collect()
 }
 
-/// Two spheres that run through each other, of other sizes, each turned its own way.
-fn apart<'a>(a: &'a Surfels, b: &'a Surfels) -> [(&'a Surfels, DMat4); 2] {
+/// Two intersecting spheres of different size and rotation.
+fn intersecting<'a>(a: &'a Surfels, b: &'a Surfels) -> [(&'a Surfels, DMat4); 2] {
     [(a, exact(1.0, [1.0, 0.0, 2.0], [0.0; 3])), (b, exact(0.5, [0.0, 3.0, 1.0], [1.0, 0.0, 0.0]))]
 }
 
-/// Fails where the pictures of these parts are not the reference's of one cloud.
+/// Asserts that placed parts match the reference of one merged cloud.
 fn assert_agree(
     device: &Arc<Device>,
     renderers: &Renderers,
@@ -76,31 +76,31 @@ fn assert_agree(
     let (one, list) = (merged(parts, settings.lighting.albedo), uploaded(device, parts));
     for (name, camera) in [("perspective", perspective()), ("parallel", parallel()), ("rising", rising())] {
         let expected = Expected::new(&one, &camera, SIZE, settings, &Tolerance::default()).unwrap();
-        for rasterizer in BOTH {
+        for rasterizer in RASTERIZERS {
             let (picture, _) = renderers.render_instances(&list, &camera, settings, options(rasterizer));
-            let verdict = expected.compare(&picture).unwrap();
-            let doubt = verdict.ambiguous as f64 / verdict.object_pixels as f64;
+            let comparison = expected.compare(&picture).unwrap();
+            let ambiguous = comparison.ambiguous as f64 / comparison.object_pixels as f64;
             println!(
-                "{what}, {name}, {rasterizer:?}: {} of {} object pixels failed, {:.2} % in doubt, worst {:?}",
-                verdict.failed,
-                verdict.object_pixels,
-                100.0 * doubt,
-                verdict.worst
+                "{what}, {name}, {rasterizer:?}: {} of {} object pixels failed, {:.2} % ambiguous, worst {:?}",
+                comparison.failed,
+                comparison.object_pixels,
+                100.0 * ambiguous,
+                comparison.worst
             );
-            assert!(verdict.object_pixels > 10_000 && doubt < 0.02, "{what}, {name}, {rasterizer:?}");
-            assert!(verdict.passed(), "{what}, {name}, {rasterizer:?}: {:?}", verdict.failures.first());
+            assert!(comparison.object_pixels > 10_000 && ambiguous < 0.02, "{what}, {name}, {rasterizer:?}");
+            assert!(comparison.passed(), "{what}, {name}, {rasterizer:?}: {:?}", comparison.failures.first());
         }
     }
 }
 
 #[test]
-fn a_scene_that_stands_as_it_is_makes_the_frame_that_it_makes_alone() {
+fn an_identity_placement_renders_the_frame_of_the_scene() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let surfels = rich(3_000);
     let scene = Arc::new(Scene::upload(&device, &surfels).unwrap());
     for method in Method::ALL {
-        // Sums of atomics are added in whatever order.
-        for rasterizer in BOTH {
+        // The order of atomic sums varies.
+        for rasterizer in RASTERIZERS {
             let blended = method.pull_push.is_none() && method.splatting.visibility != Visibility::Nearest;
             if blended && rasterizer == Rasterizer::Compute {
                 continue;
@@ -112,7 +112,7 @@ fn a_scene_that_stands_as_it_is_makes_the_frame_that_it_makes_alone() {
             let instance = Instance::new(&scene, DMat4::IDENTITY);
             let (placed, _) = renderer.render_picture(&instance, &perspective(), &settings).unwrap();
             assert!(alone == placed, "{} {rasterizer:?}", method.name);
-            assert_eq!(device.usage(), before, "it costs nothing");
+            assert_eq!(device.usage(), before, "an identity placement allocates nothing");
             assert!(alone.colour.iter().filter(|colour| colour[3] > 0.0).count() > 10_000);
         }
     }
@@ -120,7 +120,7 @@ fn a_scene_that_stands_as_it_is_makes_the_frame_that_it_makes_alone() {
 }
 
 #[test]
-fn places_of_a_scene_share_allocations() {
+fn instances_of_a_scene_share_allocations() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let scene = Arc::new(Scene::upload(&device, &plain(50)).unwrap());
     let instances = |count: usize| -> Vec<_> {
@@ -128,15 +128,15 @@ fn places_of_a_scene_share_allocations() {
             |i: usize| exact(0.5, [0.0; 3], [(i % 40) as f64 / 8.0 - 1.0, (i / 40) as f64 / 8.0, 0.0]);
         (0..count).map(|i| Instance::new(&scene, place(i))).collect()
     };
-    for (rasterizer, of_tiles) in [(Rasterizer::Draw, 0), (Rasterizer::Compute, 2)] {
+    for (rasterizer, tile_buffers) in [(Rasterizer::Draw, 0), (Rasterizer::Compute, 2)] {
         let mut renderer = Renderer::new(&device, options(rasterizer)).unwrap();
         let settings = settings("perspective-ewa");
         renderer.render(&instances(1)[..], &perspective(), &settings).unwrap();
         let before = device.usage();
         renderer.render(&instances(2000)[..], &perspective(), &settings).unwrap();
         let made = device.usage();
-        // Splats, the places' numbers, and for tiles boxes and attributes.
-        assert_eq!(made.allocations - before.allocations, 2 + of_tiles, "{rasterizer:?}");
+        // Splats, views, and on the tile path boxes and attributes.
+        assert_eq!(made.allocations - before.allocations, 2 + tile_buffers, "{rasterizer:?}");
         let splats = 2000 * 50 * size_of::<surfel::frame::Splat>() as u64;
         assert!(
             made.bytes - before.bytes < 3 * splats + (4 << 20),
@@ -147,7 +147,7 @@ fn places_of_a_scene_share_allocations() {
 }
 
 #[test]
-fn many_places_share_pools_of_descriptor_sets() {
+fn many_instances_share_descriptor_pools() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let scene = Arc::new(Scene::upload(&device, &plain(50)).unwrap());
     let mut renderer = Renderer::new(&device, options(Rasterizer::Compute)).unwrap();
@@ -160,19 +160,19 @@ fn many_places_share_pools_of_descriptor_sets() {
     };
     let [one, many, again, few] = [1, 500, 500, 1].map(&mut pools);
     assert!(one == 1 && many <= 8 && again == many, "{one}, {many}, {again}");
-    assert!(few <= 2, "pools whose sets went are kept: {few}");
+    assert!(few <= 2, "unused descriptor pools are kept: {few}");
     assert_silent(&device);
 }
 
 #[test]
-fn a_placed_scene_is_the_reference_of_its_surfels_moved() {
+fn a_placed_scene_matches_the_reference_of_transformed_surfels() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let (surfels, renderers) = (rich(3_000), Renderers::new(&device));
-    let places = [
+    let placements = [
         ("exact", exact(2.0, [1.0, 2.0, 3.0], [0.0, 0.0, -1.0])),
         ("turned", turned(1.3, [0.3, -1.0, 0.4], 2.2, [0.3, 0.1, -0.4])),
     ];
-    for (name, place) in places {
+    for (name, place) in placements {
         assert_agree(&device, &renderers, &[(&surfels, place)], &settings("perspective-ewa"), name);
     }
     assert_silent(&device);
@@ -180,22 +180,22 @@ fn a_placed_scene_is_the_reference_of_its_surfels_moved() {
 
 #[test]
 #[ignore = "takes long: tools/test --all"]
-fn scenes_that_run_through_each_other_are_one_cloud_by_every_method() {
+fn intersecting_scenes_match_one_cloud_by_every_method() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let (a, b) = (painted(3_000), rich(1_500));
     let renderers = Renderers::new(&device);
     for method in Method::SPLATTING {
-        assert_agree(&device, &renderers, &apart(&a, &b), &settings(method.name), method.name);
+        assert_agree(&device, &renderers, &intersecting(&a, &b), &settings(method.name), method.name);
     }
     assert_silent(&device);
 }
 
 #[test]
-fn unlike_scenes_are_one_cloud() {
+fn scenes_with_different_streams_match_one_cloud() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let (bare, bytes, all) = (plain(3_000), painted(2_000), rich(1_500));
     let renderers = Renderers::new(&device);
-    let turns = [exact(1.0, [0.0; 3], [0.0; 3]), exact(0.5, [2.0, 1.0, 0.0], [1.0, 0.0, 0.0])];
+    let placements = [exact(1.0, [0.0; 3], [0.0; 3]), exact(0.5, [2.0, 1.0, 0.0], [1.0, 0.0, 0.0])];
     let with = |change: &dyn Fn(&mut Settings)| {
         let mut settings = settings("perspective-ewa");
         change(&mut settings);
@@ -210,12 +210,12 @@ fn unlike_scenes_are_one_cloud() {
         ("coverage", with(&|s| s.alpha = Alpha::Coverage)),
         ("axis", with(&|s| s.splatting = axis)),
     ];
-    // Each kind of targets once: those of normals and depths are among the others'.
+    // Each set of targets once: normals and depths are in those of others.
     let frames =
         all_frames.into_iter().filter(|(name, _)| if_whole(true, !["normals", "depths"].contains(name)));
     for (i, (name, settings)) in frames.enumerate() {
-        let [first, second] = turns;
-        // One of them without colours, either way round; the first with the identity.
+        let [first, second] = placements;
+        // One of them without colours, in either order; the first has an identity transform.
         let pairs = [[(&bare, first), (&all, second)], [(&bytes, first), (&bare, second)]];
         for pair in &pairs[if_whole(0..2, i % 2..i % 2 + 1)] {
             assert_agree(&device, &renderers, pair, &settings, name);
@@ -223,39 +223,40 @@ fn unlike_scenes_are_one_cloud() {
     }
     let by_surfel = Splatting { normalization: Normalization::Surfel, ..Splatting::default() };
     let [a, b] = [bare, all].map(weighted);
-    assert_agree(&device, &renderers, &apart(&a, &b), &with(&|s| s.splatting = by_surfel), "weights");
+    assert_agree(&device, &renderers, &intersecting(&a, &b), &with(&|s| s.splatting = by_surfel), "weights");
     assert_silent(&device);
 }
 
-/// Points fall into one pixel or another by rounding alone where they are at a border, and what is pulled of them follows.
+/// Pixels whose colours differ. Rounding moves points across pixel borders, and pulled samples follow.
 fn differing(a: &Picture, b: &Picture) -> usize {
     let near = |a: &[f32], b: &[f32]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 2e-3);
     a.colour.iter().zip(&b.colour).filter(|(a, b)| !near(&a[..], &b[..])).count()
 }
 
 #[test]
-fn points_lines_and_triangles_are_one_model_by_pull_push() {
+fn placed_points_match_one_model_by_pull_push() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let (a, b) = (painted(20_000), plain(12_000));
-    let (placed, renderers) = (uploaded(&device, &apart(&a, &b)), Renderers::new(&device));
+    let (placed, renderers) = (uploaded(&device, &intersecting(&a, &b)), Renderers::new(&device));
     for method in ["pull-push", "pull-push-paper"] {
         let settings = settings(method);
-        let one = merged(&apart(&a, &b), settings.lighting.albedo);
+        let one = merged(&intersecting(&a, &b), settings.lighting.albedo);
         let alone = Scene::upload(&device, &one).unwrap();
         for camera in &[perspective(), parallel(), rising()][if_whole(0..3, 0..1)] {
             let expected = reference::render(&one, camera, SIZE, &settings, &()).unwrap().to_picture();
-            for rasterizer in BOTH {
+            for rasterizer in RASTERIZERS {
                 for precision in [Precision::Full, Precision::Half] {
                     let options = RenderOptions { precision, ..options(rasterizer) };
                     let (picture, _) = renderers.render_instances(&placed, camera, &settings, options);
-                    let (own, _) = renderers.render_instances(&alone, camera, &settings, options);
-                    let [twins, merged] = [&expected, &own].map(|other| differing(&picture, other));
-                    let seen = own.colour.iter().filter(|colour| colour[3] > 0.0).count();
+                    let (single, _) = renderers.render_instances(&alone, camera, &settings, options);
+                    let [from_reference, from_merged] =
+                        [&expected, &single].map(|other| differing(&picture, other));
+                    let covered = single.colour.iter().filter(|colour| colour[3] > 0.0).count();
                     println!(
-                        "{method} {rasterizer:?} {precision:?}: of {seen} px {twins} are not the reference's, {merged} not the merged cloud's"
+                        "{method} {rasterizer:?} {precision:?}: of {covered} px {from_reference} differ from the reference's, {from_merged} from the merged cloud's"
                     );
-                    let most = if precision == Precision::Full { seen / 500 } else { usize::MAX };
-                    assert!(seen > 10_000 && merged <= seen / 500 && twins <= most);
+                    let most = if precision == Precision::Full { covered / 500 } else { usize::MAX };
+                    assert!(covered > 10_000 && from_merged <= covered / 500 && from_reference <= most);
                 }
             }
         }
@@ -263,15 +264,15 @@ fn points_lines_and_triangles_are_one_model_by_pull_push() {
     assert_silent(&device);
 }
 
-fn of_lines(primitives: Primitives) -> Model {
+fn line_model(primitives: Primitives) -> Model {
     Model { primitives, ..Default::default() }
 }
 
 #[test]
-fn lines_and_triangles_are_placed_as_surfels_are() {
+fn placed_lines_and_triangles_match_one_model() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let surfels = painted(12_000);
-    // More than a command is of; of the two triangles both are large in one and the second alone in others.
+    // More than one command covers. In one instance both triangles are large, in others only the second.
     let place = |i: i32| {
         let [x, y] = [i % 8, i / 8].map(|k| 0.375 * f64::from(k));
         match i {
@@ -279,46 +280,46 @@ fn lines_and_triangles_are_placed_as_surfels_are() {
             _ => exact(0.0625, [0.0, 0.0, 3.0], [x - 1.0, y, 1.25]),
         }
     };
-    let places: Vec<_> = (0..40).map(place).collect();
+    let placements: Vec<_> = (0..40).map(place).collect();
     let models: Vec<_> = std::iter::once(Model { surfels, ..Default::default() })
-        .chain(places.iter().map(|place| of_lines(moved_lines(&lines(), place))))
+        .chain(placements.iter().map(|place| line_model(moved_lines(&lines(), place))))
         .collect();
     let settings = settings("pull-push");
     let upload = |model: &Model| Arc::new(Scene::upload(&device, model).unwrap());
-    let [surfels, own] = [&models[0], &of_lines(lines())].map(upload);
+    let [surfels, single] = [&models[0], &line_model(lines())].map(upload);
     let alone = upload(&Model::merge(models, settings.lighting.albedo).unwrap());
-    let placed = places.iter().map(|place| Instance::new(&own, *place));
+    let placed = placements.iter().map(|place| Instance::new(&single, *place));
     let list: Vec<_> = std::iter::once(Instance::new(&surfels, DMat4::IDENTITY)).chain(placed).collect();
     for camera in [perspective(), parallel()] {
-        for rasterizer in BOTH {
+        for rasterizer in RASTERIZERS {
             let mut renderer = Renderer::new(&device, options(rasterizer)).unwrap();
             let (alone, _) = renderer.render_picture(&alone, &camera, &settings).unwrap();
             let (placed, _) = renderer.render_picture(&list, &camera, &settings).unwrap();
             let (without, _) = renderer.render_picture(&list[..1], &camera, &settings).unwrap();
-            let [same, shown] = [&alone, &without].map(|other| differing(&placed, other));
-            println!("{rasterizer:?}: {same} px differ, {shown} show lines or triangles");
-            assert!(shown > 5_000 && same <= shown / 1_000);
+            let [same, with_lines] = [&alone, &without].map(|other| differing(&placed, other));
+            println!("{rasterizer:?}: {same} px differ, {with_lines} show lines or triangles");
+            assert!(with_lines > 5_000 && same <= with_lines / 1_000);
         }
     }
     assert_silent(&device);
 }
 
 #[test]
-fn numbers_are_counted_on_from_scene_to_scene() {
+fn ids_continue_from_scene_to_scene() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let (a, b) = (painted(20_000), plain(12_000));
     let settings = settings("pull-push");
-    let one = merged(&apart(&a, &b), settings.lighting.albedo);
-    let (list, alone) = (uploaded(&device, &apart(&a, &b)), Scene::upload(&device, &one).unwrap());
+    let one = merged(&intersecting(&a, &b), settings.lighting.albedo);
+    let (list, alone) = (uploaded(&device, &intersecting(&a, &b)), Scene::upload(&device, &one).unwrap());
     assert_eq!(Instances::<Scene>::from(&list).first_ids(), [0, 20_000]);
-    for rasterizer in BOTH {
+    for rasterizer in RASTERIZERS {
         let outputs = Outputs { id: true, ..options(rasterizer).outputs };
         let mut renderer = Renderer::new(&device, RenderOptions { outputs, ..options(rasterizer) }).unwrap();
         let (placed, _) = renderer.render_picture(&list, &perspective(), &settings).unwrap();
         let (alone, _) = renderer.render_picture(&alone, &perspective(), &settings).unwrap();
         let [placed, alone] = [placed, alone].map(|picture| picture.id.unwrap());
         let of = |range: std::ops::Range<u32>| placed.iter().filter(|id| range.contains(id)).count();
-        assert!(of(0..20_000) > 5_000 && of(20_000..32_000) > 1_000, "both are seen");
+        assert!(of(0..20_000) > 5_000 && of(20_000..32_000) > 1_000, "both are covered");
         let differ = placed.iter().zip(&alone).filter(|(a, b)| a != b).count();
         println!("{rasterizer:?}: {differ} numbers differ");
         assert!(differ < 40, "{differ}");
@@ -327,15 +328,15 @@ fn numbers_are_counted_on_from_scene_to_scene() {
 }
 
 #[test]
-fn counts_are_summed_and_passes_are_as_many() {
+fn counts_are_summed_and_passes_are_the_same() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let (a, b) = (painted(3_000), rich(1_500));
-    let list = uploaded(&device, &apart(&a, &b));
+    let list = uploaded(&device, &intersecting(&a, &b));
     for name in ["perspective-ewa", "sprites-unfiltered", "pull-push"] {
-        for rasterizer in BOTH {
+        for rasterizer in RASTERIZERS {
             let options = RenderOptions { count: true, profile: true, ..options(rasterizer) };
             let settings = settings(name);
-            let one = merged(&apart(&a, &b), settings.lighting.albedo);
+            let one = merged(&intersecting(&a, &b), settings.lighting.albedo);
             let alone = Scene::upload(&device, &one).unwrap();
             let mut renderer = Renderer::new(&device, options).unwrap();
             let (_, placed) = renderer.render_picture(&list, &perspective(), &settings).unwrap();
@@ -350,9 +351,9 @@ fn counts_are_summed_and_passes_are_as_many() {
 }
 
 #[test]
-fn many_instances_are_one_cloud_and_none_shows_nothing() {
+fn many_instances_match_one_cloud_and_none_render_nothing() {
     let Some(device) = device(DeviceLimits::default()) else { return };
-    // More than a command draws at once, some of another scene between them; in front some whose splats are large.
+    // More than one command draws, with instances of another scene in between; some splats in front are large.
     let (many, few) = (rich(150), painted(400));
     let [of_many, of_few] = [&many, &few].map(|surfels| Arc::new(Scene::upload(&device, surfels).unwrap()));
     let place = |i: usize| {
@@ -365,47 +366,47 @@ fn many_instances_are_one_cloud_and_none_shows_nothing() {
         (0..90).map(|i| Instance::new(if is_of_few(&i) { &of_few } else { &of_many }, place(i))).collect();
     let parts: Vec<_> = (0..90).map(|i| (if is_of_few(&i) { &few } else { &many }, place(i))).collect();
     for method in Method::ALL {
-        for rasterizer in BOTH {
+        for rasterizer in RASTERIZERS {
             let settings = settings(method.name);
             let mut renderer = Renderer::new(&device, options(rasterizer)).unwrap();
             let (picture, _) = renderer.render_picture(&list, &perspective(), &settings).unwrap();
             let alone = Scene::upload(&device, &merged(&parts, settings.lighting.albedo)).unwrap();
-            let (own, _) = renderer.render_picture(&alone, &perspective(), &settings).unwrap();
-            let seen = own.colour.iter().filter(|colour| colour[3] > 0.0).count();
-            let differ = differing(&picture, &own);
-            println!("{} {rasterizer:?}: {differ} of {seen} px differ", method.name);
-            assert!(seen > 5_000 && differ <= seen / 500);
+            let (single, _) = renderer.render_picture(&alone, &perspective(), &settings).unwrap();
+            let covered = single.colour.iter().filter(|colour| colour[3] > 0.0).count();
+            let differ = differing(&picture, &single);
+            println!("{} {rasterizer:?}: {differ} of {covered} px differ", method.name);
+            assert!(covered > 5_000 && differ <= covered / 500);
             let nothing: [Instance; 0] = [];
             let (picture, _) = renderer.render_picture(&nothing, &perspective(), &settings).unwrap();
             assert!(picture.colour.iter().all(|colour| *colour == [0.0; 4]), "{}", method.name);
             assert!(picture.depth.unwrap().iter().all(|depth| *depth == 0.0));
-            // And what was there before is there again.
+            // The previous instances render again.
             let (again, _) = renderer.render_picture(&list, &perspective(), &settings).unwrap();
-            assert!(differing(&again, &own) <= seen / 500);
+            assert!(differing(&again, &single) <= covered / 500);
         }
     }
     assert_silent(&device);
 }
 
 #[test]
-fn what_no_scene_can_be_placed_by_is_refused() {
+fn invalid_transforms_are_rejected() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let scene = Arc::new(Scene::upload(&device, &painted(500)).unwrap());
     let mut renderer = Renderer::new(&device, options(Rasterizer::Draw)).unwrap();
-    for (transform, said) in [
+    for (transform, expected) in [
         (DMat4::from_scale(DVec3::new(1.0, 1.1, 1.0)), "instance 1 scales by 1 along one axis"),
         (DMat4::from_scale(DVec3::new(1.0, 1.0, -1.0)), "instance 1 mirrors"),
         (DMat4::from_translation(DVec3::NAN), "instance 1 holds a value that is not finite"),
     ] {
         let list = [Instance::new(&scene, DMat4::IDENTITY), Instance::new(&scene, transform)];
         let error = renderer.render(&list, &perspective(), &settings("perspective-ewa")).unwrap_err();
-        assert!(error.to_string().contains(said), "{error}");
+        assert!(error.to_string().contains(expected), "{error}");
         assert!(error.to_string().contains("uniform scale above 0"), "{error}");
         assert!(list[1].bounds().is_err());
     }
     let placed = Instance::new(&scene, exact(2.0, [0.0; 3], [3.0, 0.0, 0.0])).bounds().unwrap();
-    let own = scene.bounds();
-    assert!((placed.radius - 2.0 * own.radius).abs() < 1e-9);
-    assert!((placed.centre() - 2.0 * own.centre() - 3.0 * DVec3::X).length() < 1e-9);
+    let single = scene.bounds();
+    assert!((placed.radius - 2.0 * single.radius).abs() < 1e-9);
+    assert!((placed.centre() - 2.0 * single.centre() - 3.0 * DVec3::X).length() < 1e-9);
     assert_silent(&device);
 }

@@ -168,12 +168,12 @@ fn lines_polygons_and_points_shine_as_the_reference_says() {
             ..Default::default()
         };
         let found = render(&device, &model, &camera, &settings, options);
-        let twin = |model: &Model| {
+        let reference = |model: &Model| {
             surfel::verify::reference::render(model, &camera, [SIDE; 2], &settings, &()).unwrap().to_picture()
         };
-        let (twin, without) = (twin(&model), twin(&plain));
-        let object = twin.colour.iter().filter(|colour| colour[3] > 0.0).count();
-        let [other, changed] = [differences(&found, &twin), differences(&twin, &without)];
+        let (reference, without) = (reference(&model), reference(&plain));
+        let object = reference.colour.iter().filter(|colour| colour[3] > 0.0).count();
+        let [other, changed] = [differences(&found, &reference), differences(&reference, &without)];
         println!("{name}: {other} of {object} differ; materials change {changed}");
         assert!(200 * other <= object && 4 * changed > object, "{name}: {other} {changed} of {object}");
     }

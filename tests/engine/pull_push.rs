@@ -2,7 +2,7 @@
 //! surface.
 
 use crate::support::gpu::{assert_silent, device, render};
-use crate::support::pyramids::{Made, Shot};
+use crate::support::pyramids::{FrameCase, Rendered};
 use crate::support::truth::{Differences, Truth};
 #[allow(dead_code)] // of what is shared
 use glam::DVec3;
@@ -49,7 +49,7 @@ fn distance(truth: &Truth, position: DVec3) -> f64 {
     truth.camera().view.transform_point3(position).z
 }
 
-fn faults(truth: &Truth, exact: &[f64], Made { frame, pyramid }: &Made) -> Faults {
+fn faults(truth: &Truth, exact: &[f64], Rendered { frame, pyramid }: &Rendered) -> Faults {
     let picture: Picture = frame.to_picture();
     let colour = |i: usize| {
         let [r, g, b, a] = picture.colour[i];
@@ -89,14 +89,14 @@ fn faults_of(
     exact: &[f64],
     points: u32,
     (rules, precision): (Rules, Precision),
-    make: &dyn Fn(&Shot) -> Made,
+    make: &dyn Fn(&FrameCase) -> Rendered,
 ) -> Faults {
     let surfels = scenes::open(&format!("scene:bumpy-sphere?points={points}&seed=1")).unwrap();
     let pull_push = PullPush::of(rules);
     let shading = Shading::Colour;
     let settings = Settings { shading, cull: Cull::Back, pull_push: Some(pull_push), ..Default::default() };
     let name = format!("{points} points, {rules:?}, {precision:?}");
-    let shot = Shot {
+    let case = FrameCase {
         name,
         parts: (&surfels).into(),
         camera: truth.camera(),
@@ -105,14 +105,14 @@ fn faults_of(
         pull_push,
         precision,
     };
-    let found = faults(truth, exact, &make(&shot));
+    let found = faults(truth, exact, &make(&case));
     let wrong = [found.differences.wrong_percent(), found.differences.wrong_encoded_percent()];
-    println!("{}: {found:?}, wrong {wrong:.3?} % (linear, sRGB-encoded)", shot.name);
+    println!("{}: {found:?}, wrong {wrong:.3?} % (linear, sRGB-encoded)", case.name);
     found
 }
 
 /// At five densities the robust rules keep to what was measured, and are better than the paper's.
-fn reaches_what_was_measured(make: &dyn Fn(&Shot) -> Made) {
+fn reaches_what_was_measured(make: &dyn Fn(&FrameCase) -> Rendered) {
     let truth = Truth::new(1024);
     let exact = truth.coverage();
     // Holes, missing, extra, wrong %, normal °; leaks, where discs are small enough to tell.
@@ -165,14 +165,14 @@ fn coarser_levels_than_the_largest_disc_change_nothing() {
 #[test]
 #[ignore = "takes long: tools/test --all"]
 fn the_reference_reaches_what_was_measured() {
-    reaches_what_was_measured(&|shot| shot.by_twin());
+    reaches_what_was_measured(&|case| case.by_reference());
 }
 
 #[test]
 #[ignore = "takes long: tools/test --all"]
 fn the_gpu_reaches_what_was_measured() {
     let Some(device) = device(DeviceLimits::default()) else { return };
-    reaches_what_was_measured(&|shot| shot.by_gpu(&device));
+    reaches_what_was_measured(&|case| case.by_gpu(&device));
     assert_silent(&device);
 }
 
@@ -203,7 +203,7 @@ fn coverage_is_what_the_surface_covers() {
             "{points} points: a mask is off by, its gaps, those inside: {mask:.0?}; coverage: {coverage:.0?}"
         );
         assert!(coverage.0 < most * mask.0 && coverage.1 <= gaps, "{points}: {coverage:?} {mask:?}");
-        // Those inside are beside the holes.
+        // Inner ones are next to holes.
         assert!(coverage.2 <= mask.2 + 10, "{points}: {coverage:?} {mask:?}");
     }
     assert_silent(&device);
@@ -249,7 +249,7 @@ fn numbers_are_those_of_points_beside_what_is_seen() {
 }
 
 #[test]
-fn passes_and_targets_are_those_that_are_told() {
+fn passes_and_targets_match_the_plan() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let surfels = scenes::open("scene:bumpy-sphere?points=2000&seed=1").unwrap();
     let scene = Scene::upload(&device, &surfels).unwrap();
@@ -271,17 +271,17 @@ fn passes_and_targets_are_those_that_are_told() {
             let plan = FramePlan::new(&[scene.streams()], true, &settings, &options, rasterizer);
             let timed = report.pass_times.iter().map(|time| time.label).filter(|label| *label != "clear");
             assert_eq!(timed.collect::<Vec<_>>(), plan.passes);
-            let told = plan.targets;
-            for (target, (name, bytes)) in renderer.targets().iter().zip(&told) {
-                let [made, told] = [target.bytes as f64, bytes * 1e4];
+            let planned = plan.targets;
+            for (target, (name, bytes)) in renderer.targets().iter().zip(&planned) {
+                let [made, planned] = [target.bytes as f64, bytes * 1e4];
                 assert!(
-                    target.name == *name && made >= told && made < 1.1 * told + 65_536.0,
-                    "{target:?} {told}"
+                    target.name == *name && made >= planned && made < 1.1 * planned + 65_536.0,
+                    "{target:?} {planned}"
                 );
             }
-            let coloured = told.iter().any(|(name, _)| name.ends_with("colours"));
-            assert_eq!((renderer.targets().len(), coloured), (told.len(), shading == Shading::Lit));
-            let names = told.iter().map(|target| target.0);
+            let coloured = planned.iter().any(|(name, _)| name.ends_with("colours"));
+            assert_eq!((renderer.targets().len(), coloured), (planned.len(), shading == Shading::Lit));
+            let names = planned.iter().map(|target| target.0);
             let nearest: Vec<_> = names.filter(|name| name.starts_with("nearest")).collect();
             let drawn = rasterizer == Rasterizer::Draw;
             assert_eq!(nearest, if drawn { &["nearest_depth", "nearest_number"][..] } else { &["nearest"] });

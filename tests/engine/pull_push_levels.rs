@@ -1,8 +1,8 @@
-//! Pull–push on the GPU, pass by pass: what each makes of the GPU's own input, against what the float64 twin makes of the same.
+//! Pull–push on the GPU, pass by pass: the result of each pass for the GPU's own input against the float64 reference for the same input.
 
 use crate::support::gpu::{assert_silent, device};
 use crate::support::if_whole;
-use crate::support::pyramids::Shot;
+use crate::support::pyramids::FrameCase;
 use crate::support::scenes::{Case, cases};
 use crate::support::texture::textured;
 use glam::DVec3;
@@ -19,53 +19,53 @@ use surfel::vk::{Device, DeviceLimits};
 use surfel::{Precision, Settings};
 
 const SIZES: [[u32; 2]; 5] = [[1, 1], [1, 1023], [640, 480], [1023, 769], [1024, 1024]];
-/// Those of the short run.
+/// Sizes of the short run.
 const SHORT_SIZES: [[u32; 2]; 3] = [[1, 1], [1, 1023], [321, 240]];
 
 const BOTH: [Rules; 2] = [Rules::Paper, Rules::Robust];
 
-/// What is nearer to another outcome is in doubt: a comparison of levels, relative.
-const DOUBT: f64 = 1e-5;
+/// Comparisons of levels closer than this, relative, are ambiguous.
+const AMBIGUITY: f64 = 1e-5;
 
-/// The same of the projection. Two distances are compared after either was rounded, by half a unit in the last place: by 2⁻²⁴ of it at most.
-/// Which pixel a point is in, and which side it shows, is decided in twice the precision, with errors of some 2⁻⁴⁴: they are the hundredth.
-const DOUBT_OF_POINTS: f64 = 1.01 / (1 << 23) as f64;
+/// Likewise for the projection. Two distances are compared after both are rounded by half a unit in the last place, 2⁻²⁴ at most. The pixel
+/// of a point and its visible side are decided in twice the precision, with errors of some 2⁻⁴⁴: these are the hundredth.
+const POINT_AMBIGUITY: f64 = 1.01 / (1 << 23) as f64;
 
-/// Largest difference of attributes that passes: of distances relative, of displacements and radii in radii or pixels of the level, of normals,
-/// colours and texture coordinates absolute.
+/// Largest accepted difference of attributes: distances relative, displacements and radii in radii or pixels of the level, normals, colours
+/// and texture coordinates absolute.
 const LIMIT: f64 = 2e-4;
 
 /// Largest differences of attributes, in the units of [`LIMIT`].
 #[derive(Clone, Copy, Debug, Default)]
 struct Worst {
-    /// Of near, far and depth.
+    /// Near, far and depth.
     distance: f64,
-    /// Of displacement and radius.
-    place: f64,
+    /// Displacement and radius.
+    displacement: f64,
     normal: f64,
     colour: f64,
-    /// In turns of the texture.
+    /// Repeats of the texture.
     coordinates: f64,
 }
 
 impl Worst {
-    /// Between two samples of a level, beyond the steps to which both are rounded.
+    /// Differences of two samples of a level beyond the rounding steps of both.
     fn between(a: &Sample, b: &Sample, level: u32, steps: Steps) -> Self {
         let beyond = |difference: f64, step: f64| (difference - step).max(0.0);
         let relative = |a: f64, b: f64| (a - b).abs() / b;
         let unit = b.radius.max(f64::from(level).exp2());
-        // A tangent may as well be its opposite.
-        let turned = if a.tube && a.normal.dot(b.normal) < 0.0 { -a.normal } else { a.normal };
-        let moved = beyond((a.displacement - b.displacement).length(), SQRT_2 * steps.place);
-        let apart = largest(moved, beyond((a.radius - b.radius).abs(), steps.place));
+        // A tangent has no sign.
+        let aligned = if a.tube && a.normal.dot(b.normal) < 0.0 { -a.normal } else { a.normal };
+        let moved = beyond((a.displacement - b.displacement).length(), SQRT_2 * steps.displacement);
+        let difference = largest(moved, beyond((a.radius - b.radius).abs(), steps.displacement));
         let far = beyond((a.far - b.far).abs(), steps.far) / b.far;
         Self {
             distance: [relative(a.near, b.near), far, relative(a.depth, b.depth)]
                 .into_iter()
                 .fold(0.0, largest),
-            place: apart / unit,
+            displacement: difference / unit,
             normal: match a.tube == b.tube && a.id == b.id {
-                true => beyond((turned - b.normal).abs().max_element(), steps.normal),
+                true => beyond((aligned - b.normal).abs().max_element(), steps.normal),
                 false => f64::INFINITY,
             },
             colour: beyond((a.colour - b.colour).abs().max_element(), steps.colour),
@@ -75,14 +75,14 @@ impl Worst {
 
     fn widen(&mut self, other: &Self) {
         self.distance = largest(self.distance, other.distance);
-        self.place = largest(self.place, other.place);
+        self.displacement = largest(self.displacement, other.displacement);
         self.normal = largest(self.normal, other.normal);
         self.colour = largest(self.colour, other.colour);
         self.coordinates = largest(self.coordinates, other.coordinates);
     }
 
     fn passes(&self) -> bool {
-        [self.distance, self.place, self.normal, self.colour, self.coordinates]
+        [self.distance, self.displacement, self.normal, self.colour, self.coordinates]
             .into_iter()
             .all(|worst| worst <= LIMIT)
     }
@@ -90,64 +90,66 @@ impl Worst {
 
 impl fmt::Display for Worst {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { distance, place, normal, colour, coordinates } = self;
+        let Self { distance, displacement, normal, colour, coordinates } = self;
         write!(
             f,
-            "distances {distance:.1e}, places {place:.1e}, normals {normal:.1e}, colours {colour:.1e}, "
+            "distances {distance:.1e}, displacements {displacement:.1e}, normals {normal:.1e}, colours {colour:.1e}, "
         )?;
         write!(f, "coordinates {coordinates:.1e}")
     }
 }
 
-/// The greater; what is no number is the greatest.
+/// The greater value; NaN is the greatest.
 fn largest(a: f64, b: f64) -> f64 {
     if b.is_nan() || a < b { b } else { a }
 }
 
-/// How a level of the GPU's differs from the twin's.
+/// Comparison of a GPU level with the reference.
 #[derive(Clone, Debug, Default)]
-struct Verdict {
+struct LevelComparison {
     samples: usize,
-    /// Samples that differ and whose decisions are in doubt.
-    excused: usize,
-    /// Samples that differ and are in no doubt.
+    /// Samples that differ and are ambiguous.
+    ambiguous: usize,
+    /// Samples that differ without being ambiguous.
     failed: usize,
-    /// The first of them.
+    /// Description of the first failure.
     first: String,
-    /// Samples that pass where something is known.
-    known: usize,
-    /// Of those, how many are not rounded to the twin's numbers, but to others next to them.
-    beside: usize,
-    /// Over all samples that pass.
+    /// Accepted samples that are not empty.
+    filled: usize,
+    /// Of these, those rounded to an adjacent value.
+    adjacent: usize,
+    /// Largest differences of accepted samples.
     worst: Worst,
 }
 
-impl Verdict {
-    fn of(gpu: &Level, twin: &LevelDecisions, doubt: f64, compact: Option<Compact>) -> Self {
+impl LevelComparison {
+    fn of(gpu: &Level, reference: &LevelDecisions, ambiguity: f64, compact: Option<Compact>) -> Self {
         let steps = |sample: &Sample| compact.map_or(Steps::default(), |compact| compact.steps(sample));
-        assert_eq!((gpu.size, gpu.samples.len()), (twin.level.size, twin.gaps.len()));
+        assert_eq!((gpu.size, gpu.samples.len()), (reference.level.size, reference.gaps.len()));
         let mut found = Self { samples: gpu.samples.len(), ..Default::default() };
-        let pairs = gpu.samples.iter().zip(&twin.level.samples).zip(&twin.gaps);
-        for (i, ((gpu, own), margin)) in pairs.enumerate() {
-            let worst = match (gpu, own) {
-                (Some(gpu), Some(own)) => Some(Worst::between(gpu, own, twin.level.level, steps(own))),
+        let pairs = gpu.samples.iter().zip(&reference.level.samples).zip(&reference.gaps);
+        for (i, ((gpu, expected), margin)) in pairs.enumerate() {
+            let worst = match (gpu, expected) {
+                (Some(gpu), Some(expected)) => {
+                    Some(Worst::between(gpu, expected, reference.level.level, steps(expected)))
+                }
                 (None, None) => Some(Worst::default()),
                 _ => None,
             };
             match worst.filter(Worst::passes) {
                 Some(worst) => {
                     found.worst.widen(&worst);
-                    if let (Some(gpu), Some(own), true) = (gpu, own, compact.is_some()) {
-                        found.known += 1;
-                        found.beside += usize::from(is_beside(gpu, own, steps(own)));
+                    if let (Some(gpu), Some(expected), true) = (gpu, expected, compact.is_some()) {
+                        found.filled += 1;
+                        found.adjacent += usize::from(is_adjacent(gpu, expected, steps(expected)));
                     }
                 }
-                None if *margin < doubt => found.excused += 1,
+                None if *margin < ambiguity => found.ambiguous += 1,
                 None => {
                     found.failed += 1;
                     if found.first.is_empty() {
                         found.first =
-                            format!("sample {i}, margin {margin:.2e}: {worst:?}: {gpu:?} for {own:?}");
+                            format!("sample {i}, margin {margin:.2e}: {worst:?}: {gpu:?} for {expected:?}");
                     }
                 }
             }
@@ -156,115 +158,127 @@ impl Verdict {
     }
 }
 
-/// Whether two samples within a step of each other differ by half of one, of those numbers that are rounded most.
-fn is_beside(a: &Sample, b: &Sample, steps: Steps) -> bool {
-    let place = (a.displacement - b.displacement).abs().max_element().max((a.radius - b.radius).abs());
-    // What far is beyond near is no longer exact where it was added.
+/// Whether two samples within a rounding step of each other differ by half of one, in the coarsest formats.
+fn is_adjacent(a: &Sample, b: &Sample, steps: Steps) -> bool {
+    let displacement = (a.displacement - b.displacement).abs().max_element().max((a.radius - b.radius).abs());
+    // far − near is inexact after the addition.
     let beyond = ((a.far - a.near) - (b.far - b.near)).abs() - 1e-6 * b.far;
-    place > 0.5 * steps.place || beyond > 0.5 * steps.far
+    displacement > 0.5 * steps.displacement || beyond > 0.5 * steps.far
 }
 
-/// Samples of a level of less than 3000 that may be excused: at one in 10⁵, which is more than are found, one level in 10⁵ has more of them.
+/// Ambiguous samples accepted in levels of less than 3000: at a rate of one in 10⁵, above the observed one, one level in 10⁵ has more.
 const FEW: usize = 2;
 
-/// Of all levels of a kind.
+/// Totals over all levels of a pass.
 #[derive(Default)]
 struct Summary {
     worst: Worst,
-    excused: usize,
+    ambiguous: usize,
     samples: usize,
-    known: usize,
-    beside: usize,
+    filled: usize,
+    adjacent: usize,
     failures: Vec<String>,
 }
 
 impl Summary {
-    fn add(&mut self, name: &str, verdict: &Verdict) {
-        self.worst.widen(&verdict.worst);
-        self.excused += verdict.excused;
-        self.samples += verdict.samples;
-        self.known += verdict.known;
-        self.beside += verdict.beside;
-        let most = (verdict.samples / 1000).max(FEW);
-        if verdict.failed > 0 || verdict.excused > most {
-            let Verdict { samples, excused, failed, first, .. } = verdict;
+    fn add(&mut self, name: &str, comparison: &LevelComparison) {
+        self.worst.widen(&comparison.worst);
+        self.ambiguous += comparison.ambiguous;
+        self.samples += comparison.samples;
+        self.filled += comparison.filled;
+        self.adjacent += comparison.adjacent;
+        let most = (comparison.samples / 1000).max(FEW);
+        if comparison.failed > 0 || comparison.ambiguous > most {
+            let LevelComparison { samples, ambiguous, failed, first, .. } = comparison;
             self.failures
-                .push(format!("{name}: {failed} failed and {excused} excused of {samples}: {first}"));
+                .push(format!("{name}: {failed} failed and {ambiguous} ambiguous of {samples}: {first}"));
         }
     }
 }
 
-/// The twin's level 0, with its doubt.
-fn projected(shot: &Shot, twin: &Reconstruction) -> LevelDecisions {
-    let visible = twin.project(shot.parts);
-    let mut margins = twin.projection_gaps(shot.parts.surfels, &visible);
-    if shot.parts.primitives.is_some() {
-        // Where a line may be or a triangle is, nothing is known of doubt, so that there must be few differences.
-        let own = |number: &Option<usize>| number.is_some_and(|number| number < shot.parts.surfels.len());
-        let free = visible.index.iter().map(|number| !own(number));
-        margins.iter_mut().zip(free).filter(|(_, free)| *free).for_each(|(margin, _)| *margin = 0.0);
+/// Level 0 of the reference, with its decision gaps.
+fn projected(case: &FrameCase, reference: &Reconstruction) -> LevelDecisions {
+    let visible = reference.project(case.parts);
+    let mut margins = reference.projection_gaps(case.parts.surfels, &visible);
+    if case.parts.primitives.is_some() {
+        // Gaps of lines and triangles are unknown: their samples count as ambiguous, so there must be few differences.
+        let is_surfel =
+            |number: &Option<usize>| number.is_some_and(|number| number < case.parts.surfels.len());
+        let is_primitive = visible.index.iter().map(|number| !is_surfel(number));
+        margins
+            .iter_mut()
+            .zip(is_primitive)
+            .filter(|(_, is_primitive)| *is_primitive)
+            .for_each(|(margin, _)| *margin = 0.0);
     }
     LevelDecisions { level: visible.level, gaps: margins }
 }
 
-/// Two frames' largest difference of colours, normals and distances (relative) where both show a surface, and the part of the pixels that
-/// differ by more than 2e-4 or in that. A pixel that is in doubt does not count.
-fn compare(gpu: &Frame, twin: &Frame, in_doubt: impl Fn(usize) -> bool) -> (f64, f64) {
-    let apart = |i: usize| {
-        if in_doubt(i) {
+/// Largest difference of colours, normals and distances (relative) of unambiguous pixels that show a surface in both frames, and the
+/// fraction of pixels that differ by more than 2e-4 or in coverage.
+fn compare(gpu: &Frame, reference: &Frame, is_ambiguous: impl Fn(usize) -> bool) -> (f64, f64) {
+    let difference = |i: usize| {
+        if is_ambiguous(i) {
             return 0.0;
         }
         let id = |frame: &Frame| frame.id.as_ref().map(|id| id[i]);
-        if gpu.covered[i] != twin.covered[i] || id(gpu) != id(twin) {
+        if gpu.covered[i] != reference.covered[i] || id(gpu) != id(reference) {
             return f64::INFINITY;
         }
-        let colours = gpu.colour[i].iter().zip(twin.colour[i]).map(|(a, b)| (a - b).abs());
-        let normals = gpu.normal[i].iter().zip(twin.normal[i]).map(|(a, b)| (a - b).abs());
-        let unit = if twin.covered[i] { twin.depth[i] } else { 1.0 };
-        let depth = (gpu.depth[i] - twin.depth[i]).abs() / unit;
+        let colours = gpu.colour[i].iter().zip(reference.colour[i]).map(|(a, b)| (a - b).abs());
+        let normals = gpu.normal[i].iter().zip(reference.normal[i]).map(|(a, b)| (a - b).abs());
+        let unit = if reference.covered[i] { reference.depth[i] } else { 1.0 };
+        let depth = (gpu.depth[i] - reference.depth[i]).abs() / unit;
         colours.chain(normals).chain([depth]).fold(0.0, largest)
     };
-    let all: Vec<f64> = (0..gpu.covered.len()).map(apart).collect();
-    let differ = all.iter().filter(|apart| apart.is_nan() || **apart > LIMIT).count();
-    let worst = all.iter().copied().filter(|apart| apart.is_finite()).fold(0.0, largest);
+    let all: Vec<f64> = (0..gpu.covered.len()).map(difference).collect();
+    let differ = all.iter().filter(|difference| difference.is_nan() || **difference > LIMIT).count();
+    let worst = all.iter().copied().filter(|difference| difference.is_finite()).fold(0.0, largest);
     (worst, differ as f64 / all.len() as f64)
 }
 
-/// A level of which nothing is known, above the coarsest.
+/// An empty level, coarser than the coarsest.
 fn beyond(coarsest: &Level) -> Level {
     let size = coarsest.coarser_size();
     Level { level: coarsest.level + 1, size, samples: vec![None; size.iter().product::<u32>() as usize] }
 }
 
-/// Every pass of a frame, each kind's levels added to `kinds`: project, pull, push. What is wrong with the last, if anything.
-fn test(device: &Arc<Device>, shot: &Shot, kinds: &mut [Summary; 3]) -> Option<String> {
-    let (made, twin, name) = (shot.by_gpu(device), shot.reconstruction(), &shot.name);
-    let compact = shot.compact();
-    let [pulled, pushed] = [&made.pyramid.pulled, &made.pyramid.pushed];
+/// Compares every pass of a frame and adds levels to `kinds`: project, pull, push. Returns the failure of shade, if any.
+fn test(device: &Arc<Device>, case: &FrameCase, kinds: &mut [Summary; 3]) -> Option<String> {
+    let (gpu, reference, name) = (case.by_gpu(device), case.reconstruction(), &case.name);
+    let compact = case.compact();
+    let [pulled, pushed] = [&gpu.pyramid.pulled, &gpu.pyramid.pushed];
 
-    let points = projected(shot, &twin);
-    kinds[0].add(&format!("{name}: project"), &Verdict::of(&pulled[0], &points, DOUBT_OF_POINTS, compact));
+    let points = projected(case, &reference);
+    kinds[0].add(
+        &format!("{name}: project"),
+        &LevelComparison::of(&pulled[0], &points, POINT_AMBIGUITY, compact),
+    );
     for (finer, level) in pulled.iter().zip(&pulled[1..]) {
         let name = format!("{name}: pull to {}", level.level);
-        kinds[1].add(&name, &Verdict::of(level, &twin.pull_decisions(finer), DOUBT, compact));
+        kinds[1]
+            .add(&name, &LevelComparison::of(level, &reference.pull_decisions(finer), AMBIGUITY, compact));
     }
     let beyond = beyond(&pulled[pulled.len() - 1]);
-    for (level, known) in pushed.iter().zip(pulled) {
+    for (level, pulled) in pushed.iter().zip(pulled) {
         let coarser = pushed.get(level.level as usize + 1).unwrap_or(&beyond);
         let name = format!("{name}: push to {}", level.level);
-        kinds[2].add(&name, &Verdict::of(level, &twin.push_decisions(coarser, known), DOUBT, compact));
+        kinds[2].add(
+            &name,
+            &LevelComparison::of(level, &reference.push_decisions(coarser, pulled), AMBIGUITY, compact),
+        );
     }
-    let margins = twin.coverage_gaps(&pushed[0]);
-    let (shade, differ) = compare(&made.frame, &twin.shade(&pushed[0]), |i| margins[i] < DOUBT);
-    let excused = margins.iter().filter(|margin| **margin < DOUBT).count();
-    if excused > FEW + margins.len() / 1000 {
-        return Some(format!("{name}: shade: {excused} pixels in doubt"));
+    let margins = reference.coverage_gaps(&pushed[0]);
+    let (shade, differ) = compare(&gpu.frame, &reference.shade(&pushed[0]), |i| margins[i] < AMBIGUITY);
+    let ambiguous = margins.iter().filter(|margin| **margin < AMBIGUITY).count();
+    if ambiguous > FEW + margins.len() / 1000 {
+        return Some(format!("{name}: shade: {ambiguous} pixels are ambiguous"));
     }
 
-    // The twin makes as many levels as it needs, the GPU all: coarser ones change nothing.
+    // The reference computes as many levels as needed, the GPU all: coarser ones have no effect.
     let top = Reconstruction::top_level(&points.level);
     let (worst, other) =
-        compare(&made.frame, &twin.shade(&twin.pyramid(points.level, top).pushed[0]), |_| false);
+        compare(&gpu.frame, &reference.shade(&reference.pyramid(points.level, top).pushed[0]), |_| false);
     let other = 100.0 * other;
     println!(
         "{name}: shade {shade:.1e}; of the whole chain {other:.4} % of pixels differ, by up to {worst:.1e}"
@@ -272,7 +286,7 @@ fn test(device: &Arc<Device>, shot: &Shot, kinds: &mut [Summary; 3]) -> Option<S
     (differ > 0.0).then(|| format!("{name}: shade {shade:.1e}, {differ}"))
 }
 
-/// The comparison camera, in perspective and not, of a picture of another shape.
+/// The comparison camera, perspective and orthographic, for an aspect ratio.
 fn cameras([width, height]: [u32; 2]) -> [(&'static str, Camera); 2] {
     let eye = 3.5 * DVec3::new(1.0, 0.8, 1.6).normalize();
     let aspect = f64::from(width) / f64::from(height);
@@ -282,13 +296,13 @@ fn cameras([width, height]: [u32; 2]) -> [(&'static str, Camera); 2] {
     [("perspective", perspective), ("orthographic", flat)]
 }
 
-fn shots<'a>(
+fn frame_cases<'a>(
     name: &'a str,
     parts: Parts<'a>,
     (shading, alpha, rules): (Shading, Alpha, &'a [Rules]),
     sizes: &'a [[u32; 2]],
     precision: Precision,
-) -> impl Iterator<Item = Shot<'a>> {
+) -> impl Iterator<Item = FrameCase<'a>> {
     let each = sizes.iter().flat_map(|&size| cameras(size).map(|(kind, camera)| (size, kind, camera)));
     each.flat_map(move |(size, kind, camera)| {
         rules.iter().map(move |&rules| {
@@ -301,20 +315,20 @@ fn shots<'a>(
                 ..Default::default()
             };
             let name = format!("{name} {kind} {}x{} {}", size[0], size[1], rules.name());
-            Shot { name, parts, camera, size, settings, pull_push, precision }
+            FrameCase { name, parts, camera, size, settings, pull_push, precision }
         })
     })
 }
 
-fn holds(
+fn assert_passes(
     list: impl IntoIterator<Item = (&'static str, impl Into<Model>, Shading)>,
     sizes: &[[u32; 2]],
     precision: Precision,
 ) {
-    holds_with((Alpha::Mask, &BOTH), list, sizes, precision);
+    assert_passes_with((Alpha::Mask, &BOTH), list, sizes, precision);
 }
 
-fn holds_with(
+fn assert_passes_with(
     (alpha, rules): (Alpha, &[Rules]),
     list: impl IntoIterator<Item = (&'static str, impl Into<Model>, Shading)>,
     sizes: &[[u32; 2]],
@@ -325,20 +339,20 @@ fn holds_with(
     let mut failures = Vec::new();
     for (name, model, shading) in list {
         let model = model.into();
-        for shot in shots(name, Parts::from(&model), (shading, alpha, rules), sizes, precision) {
-            failures.extend(test(&device, &shot, &mut kinds));
+        for case in frame_cases(name, Parts::from(&model), (shading, alpha, rules), sizes, precision) {
+            failures.extend(test(&device, &case, &mut kinds));
         }
     }
     for (name, kind) in ["project", "pull", "push"].into_iter().zip(kinds) {
-        let excused = 100.0 * kind.excused as f64 / kind.samples as f64;
+        let ambiguous = 100.0 * kind.ambiguous as f64 / kind.samples as f64;
         println!(
-            "{name}: {}, {} of {} samples excused, {excused:.4} %",
-            kind.worst, kind.excused, kind.samples
+            "{name}: {}, {} of {} samples ambiguous, {ambiguous:.4} %",
+            kind.worst, kind.ambiguous, kind.samples
         );
-        let beside = kind.beside as f64 / kind.known.max(1) as f64;
-        println!("{name}: {:.2} % are rounded to other numbers", 100.0 * beside);
-        // Rounded otherwise than to the nearest, half of each of the four numbers would be.
-        assert!(beside < 0.1, "{name}: {beside}");
+        let adjacent = kind.adjacent as f64 / kind.filled.max(1) as f64;
+        println!("{name}: {:.2} % are rounded to other numbers", 100.0 * adjacent);
+        // With another rounding, half of each of the four values would differ.
+        assert!(adjacent < 0.1, "{name}: {adjacent}");
         failures.extend(kind.failures);
     }
     assert!(failures.is_empty(), "{} failures: {:#?}", failures.len(), &failures[..failures.len().min(40)]);
@@ -351,12 +365,16 @@ fn bumpy(points: u32) -> Surfels {
 
 #[test]
 fn few_points() {
-    holds([("10 k", bumpy(10_000), Shading::Lit)], if_whole(&SIZES[..], &SHORT_SIZES[..]), Precision::Full);
+    assert_passes(
+        [("10 k", bumpy(10_000), Shading::Lit)],
+        if_whole(&SIZES[..], &SHORT_SIZES[..]),
+        Precision::Full,
+    );
 }
 
 #[test]
 fn many_points() {
-    holds(
+    assert_passes(
         [("100 k", bumpy(100_000), Shading::Colour)],
         if_whole(&SIZES[..], &SHORT_SIZES[2..]),
         Precision::Full,
@@ -364,14 +382,14 @@ fn many_points() {
 }
 
 #[test]
-fn ellipses_without_sides_and_what_has_no_colours() {
+fn two_sided_ellipses_and_no_colours() {
     let named = |name: &str| cases().into_iter().find(|case: &Case| case.name == name).unwrap().surfels;
     let list = [
         ("two-sided", named("two-sided"), Shading::Lit),
         ("ellipses", named("ellipses"), Shading::Colour),
         ("no colours", Surfels { colours: None, ..bumpy(10_000) }, Shading::Lit),
     ];
-    holds(list, if_whole(&SIZES[2..3], &SHORT_SIZES[2..]), Precision::Full);
+    assert_passes(list, if_whole(&SIZES[2..3], &SHORT_SIZES[2..]), Precision::Full);
 }
 
 #[test]
@@ -384,13 +402,13 @@ fn ribbons_tubes_and_triangles() {
         ("helix", model("helix?segments=100"), Shading::Lit),
         ("ribbon", model("ribbon?segments=40"), Shading::Lit),
     ];
-    holds(list, if_whole(&SIZES[2..3], &SHORT_SIZES[2..]), Precision::Full);
+    assert_passes(list, if_whole(&SIZES[2..3], &SHORT_SIZES[2..]), Precision::Full);
 }
 
 /// A dispatch has a second row of workgroups from 2²¹ px on.
 #[test]
 #[ignore = "takes long: tools/test --all"]
-fn more_pixels_than_a_row_of_workgroups_has() {
+fn more_pixels_than_a_row_of_workgroups() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let surfels = bumpy(100_000);
     let size = [2048, 1100];
@@ -400,9 +418,9 @@ fn more_pixels_than_a_row_of_workgroups_has() {
     let pull_push = PullPush::of(Rules::Robust);
     let settings = Settings { cull: Cull::Back, pull_push: Some(pull_push), ..Default::default() };
     let (name, parts, precision) = ("2048x1100".into(), Parts::from(&surfels), Precision::Half);
-    let shot = Shot { name, parts, camera, size, settings, pull_push, precision };
+    let case = FrameCase { name, parts, camera, size, settings, pull_push, precision };
     let mut kinds: [Summary; 3] = Default::default();
-    assert_eq!(test(&device, &shot, &mut kinds), None);
+    assert_eq!(test(&device, &case, &mut kinds), None);
     let failures: Vec<_> = kinds.iter().flat_map(|kind| &kind.failures).collect();
     assert!(failures.is_empty(), "{failures:#?}");
     assert_silent(&device);
@@ -417,13 +435,13 @@ fn compact_samples() {
         ("no colours", Surfels { colours: None, ..bumpy(10_000) }.into(), Shading::Lit),
         ("mixed", mixed, Shading::Lit),
     ];
-    holds(list, if_whole(&SIZES[1..3], &SHORT_SIZES[2..]), Precision::Half);
+    assert_passes(list, if_whole(&SIZES[1..3], &SHORT_SIZES[2..]), Precision::Half);
 }
 
 #[test]
 fn coverage() {
     let tree = scenes::model("scene:tree?segments=12&depth=2&primitives=on").unwrap();
-    holds_with(
+    assert_passes_with(
         (Alpha::Coverage, &BOTH),
         [("10 k", bumpy(10_000).into(), Shading::Lit), ("tree", tree, Shading::Colour)],
         if_whole(&SIZES[..3], &SHORT_SIZES[2..]),
@@ -441,9 +459,9 @@ fn textures() {
             Shading::Lit,
         ),
     ];
-    // As published there are colours instead, which the twin's passes would have to be given.
+    // The published rules have no textures.
     for &precision in &[Precision::Half, Precision::Full][if_whole(0..2, 0..1)] {
-        holds_with(
+        assert_passes_with(
             (Alpha::Mask, &[Rules::Robust]),
             list.clone(),
             if_whole(&SIZES[1..3], &SHORT_SIZES[2..]),

@@ -143,10 +143,10 @@ fn lines_and_polygons_are_near_the_truth() {
 }
 
 /// Pixels that are covered by one picture alone, and those that both cover whose colours or depths differ.
-fn disagreements(found: &Picture, twin: &Picture) -> [usize; 2] {
+fn disagreements(found: &Picture, reference: &Picture) -> [usize; 2] {
     let mut counts = [0; 2];
-    for (i, (a, b)) in found.colour.iter().zip(&twin.colour).enumerate() {
-        let depths = [found, twin].map(|picture| picture.depth.as_ref().unwrap()[i]);
+    for (i, (a, b)) in found.colour.iter().zip(&reference.colour).enumerate() {
+        let depths = [found, reference].map(|picture| picture.depth.as_ref().unwrap()[i]);
         let far = (depths[0] - depths[1]).abs() > 1e-4 * depths[1];
         let colours = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         counts[0] += usize::from(a[3] != b[3]);
@@ -187,12 +187,12 @@ fn the_gpu_makes_the_references_picture() {
                 let picture = render(&device, &model, camera, &settings, options);
                 let file = name.replace([':', '?', '&', '='], "-");
                 write(&picture, &format!("{file}-{}-gpu{i}.png", rules.name()));
-                let twin = surfel::verify::reference::render(&model, camera, size, &settings, &())
+                let reference = surfel::verify::reference::render(&model, camera, size, &settings, &())
                     .unwrap()
                     .to_picture();
-                write(&twin, &format!("{file}-{}-twin{i}.png", rules.name()));
-                let object = twin.colour.iter().filter(|c| c[3] > 0.0).count();
-                let [other, differ] = disagreements(&picture, &twin);
+                write(&reference, &format!("{file}-{}-reference{i}.png", rules.name()));
+                let object = reference.colour.iter().filter(|c| c[3] > 0.0).count();
+                let [other, differ] = disagreements(&picture, &reference);
                 println!("{name} {rules:?} {i}: {other} covered by one alone, {differ} of {object} differ");
                 // As published, discs are about pixels' centres, and what they cover hangs on the last bit.
                 let part = if rules == Rules::Paper { 7 } else { 200 };

@@ -36,14 +36,14 @@ const NO_ATOMICS: DeviceLimits = DeviceLimits {
 
 /// Everything that a frame leaves.
 #[derive(PartialEq)]
-struct Made {
+struct Rendered {
     picture: Picture,
     pyramids: [Vec<PyramidLevel>; 2],
     counts: SplatCounts,
 }
 
 /// What to render.
-struct Shot<'a> {
+struct FrameCase<'a> {
     name: String,
     parts: Parts<'a>,
     camera: Camera,
@@ -51,8 +51,8 @@ struct Shot<'a> {
     settings: Settings,
 }
 
-impl Shot<'_> {
-    fn by(&self, device: &Arc<Device>, rasterizer: Option<Rasterizer>) -> (Made, Rasterizer) {
+impl FrameCase<'_> {
+    fn by(&self, device: &Arc<Device>, rasterizer: Option<Rasterizer>) -> (Rendered, Rasterizer) {
         let scene = Scene::upload(device, self.parts).unwrap();
         let outputs = Outputs { normal: true, depth: true, id: true };
         let options =
@@ -60,12 +60,12 @@ impl Shot<'_> {
         let mut renderer = Renderer::new(device, options).unwrap();
         let (picture, report) = renderer.render_picture(&scene, &self.camera, &self.settings).unwrap();
         let pyramids = renderer.read_pyramids().unwrap().unwrap();
-        let made = Made { picture, pyramids, counts: report.counts.unwrap() };
+        let made = Rendered { picture, pyramids, counts: report.counts.unwrap() };
         (made, renderer.rasterizer().unwrap())
     }
 
     /// Asserts that both rasterizers leave the same; gives it.
-    fn is_one(&self, device: &Arc<Device>) -> Made {
+    fn is_one(&self, device: &Arc<Device>) -> Rendered {
         let [drawn, computed] = BOTH.map(|rasterizer| self.by(device, Some(rasterizer)));
         assert_eq!([drawn.1, computed.1], BOTH, "{}", self.name);
         assert_same(&self.name, &drawn.0, &computed.0);
@@ -73,7 +73,7 @@ impl Shot<'_> {
     }
 }
 
-fn assert_same(name: &str, a: &Made, b: &Made) {
+fn assert_same(name: &str, a: &Rendered, b: &Rendered) {
     let [first, other] = [a, b].map(|made| &made.pyramids[0][0].samples);
     let differ = first.iter().zip(other).filter(|(a, b)| a != b).count();
     assert_eq!(differ, 0, "{name}: samples of level 0 of {}", first.len());
@@ -87,9 +87,9 @@ fn named(method: &Method, base: &Settings) -> Settings {
     Settings { shading, background, lighting, cull, ..method.settings() }
 }
 
-/// The shots of a case.
-fn shots(case: &Case) -> impl Iterator<Item = Shot<'_>> {
-    let of = move |method: Method, i: usize| Shot {
+/// The frame_cases of a case.
+fn frame_cases(case: &Case) -> impl Iterator<Item = FrameCase<'_>> {
+    let of = move |method: Method, i: usize| FrameCase {
         name: format!("{} {i} {}", case.name, method.name),
         parts: (&case.surfels).into(),
         camera: case.cameras[i],
@@ -113,20 +113,20 @@ fn cameras(size: [u32; 2]) -> [Camera; 2] {
 fn drawn_points_are_computed_ones_bit_for_bit_and_as_many() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     for (i, case) in cases().iter().enumerate() {
-        for (_, shot) in shots(case).enumerate().filter(|(j, _)| if_whole(true, i % 3 == j % 3)) {
-            let made = shot.is_one(&device);
-            let twin = Reconstruction::new(
-                &shot.camera,
-                shot.size,
-                &shot.settings,
-                shot.settings.pull_push.unwrap(),
+        for (_, case) in frame_cases(case).enumerate().filter(|(j, _)| if_whole(true, i % 3 == j % 3)) {
+            let made = case.is_one(&device);
+            let reference = Reconstruction::new(
+                &case.camera,
+                case.size,
+                &case.settings,
+                case.settings.pull_push.unwrap(),
             );
-            let seen = twin.unwrap().project(shot.parts).counts;
+            let seen = reference.unwrap().project(case.parts).counts;
             let SplatCounts { drawn, behind, eye_plane, back, outside, invalid } = made.counts;
             let counts = [drawn, behind, eye_plane, back, outside, invalid].map(|count| count as usize);
-            let twins = [seen.drawn, seen.behind, seen.eye_plane, seen.back, seen.outside, seen.invalid];
-            assert_eq!(counts, twins, "{}", shot.name);
-            assert!(drawn > 0, "{}", shot.name);
+            let expected = [seen.drawn, seen.behind, seen.eye_plane, seen.back, seen.outside, seen.invalid];
+            assert_eq!(counts, expected, "{}", case.name);
+            assert!(drawn > 0, "{}", case.name);
         }
     }
     assert_silent(&device);
@@ -147,10 +147,10 @@ fn both_meet_lines_and_triangles_alike() {
             let settings = Settings { shading: Shading::Lit, ..method.settings() };
             let parts = Parts::from(&model);
             let name = format!("{name} {}", method.name);
-            let shot = Shot { name, parts, camera, size: [257, 200], settings };
-            let both = shot.is_one(&device);
+            let case = FrameCase { name, parts, camera, size: [257, 200], settings };
+            let both = case.is_one(&device);
             // Neither kind hides all of the other.
-            let alone = Shot { parts: Parts::from(&lone), ..shot }.by(&device, Some(Rasterizer::Draw));
+            let alone = FrameCase { parts: Parts::from(&lone), ..case }.by(&device, Some(Rasterizer::Draw));
             assert!(alone.0.picture != both.picture, "{}: no surfel is seen", model.surfels.len());
             assert_eq!(alone.1, Rasterizer::Compute, "there is nothing to draw");
         }
@@ -187,17 +187,18 @@ fn of_points_as_near_the_first_is_seen() {
         for method in PRESETS {
             let settings = Settings { shading: Shading::Colour, cull: Cull::None, ..method.settings() };
             let name = method.name.to_owned();
-            let shot = Shot { name, parts: (&surfels).into(), camera, size: [64, 64], settings };
-            let made = shot.is_one(&device);
-            let twin = Reconstruction::new(&camera, shot.size, &shot.settings, method.pull_push.unwrap());
-            let seen = twin.unwrap().project(&surfels);
+            let case = FrameCase { name, parts: (&surfels).into(), camera, size: [64, 64], settings };
+            let made = case.is_one(&device);
+            let reference =
+                Reconstruction::new(&camera, case.size, &case.settings, method.pull_push.unwrap());
+            let seen = reference.unwrap().project(&surfels);
             let pixels = made.pyramids[0][0].samples.iter().zip(&seen.level.samples);
             let mut shown = 0;
             for (made, own) in pixels {
-                assert_eq!(made.is_some(), own.is_some(), "{}", shot.name);
+                assert_eq!(made.is_some(), own.is_some(), "{}", case.name);
                 let (Some(made), Some(own)) = (made, own) else { continue };
                 let colour = made.colour.unwrap().map(f64::from);
-                assert!(DVec3::from_array(colour).abs_diff_eq(own.colour, 1e-4), "{}", shot.name);
+                assert!(DVec3::from_array(colour).abs_diff_eq(own.colour, 1e-4), "{}", case.name);
                 shown += 1;
             }
             assert!(shown > 800, "{shown}");
@@ -214,7 +215,7 @@ fn every_size_and_depth_is_drawn_as_computed() {
         for (camera, method) in cameras(size).into_iter().zip(PRESETS) {
             let settings = method.settings();
             let name = format!("{size:?} {}", method.name);
-            Shot { name, parts: (&sphere).into(), camera, size, settings }.is_one(&device);
+            FrameCase { name, parts: (&sphere).into(), camera, size, settings }.is_one(&device);
         }
     }
     // From the near plane to fourteen orders of magnitude beyond, a pixel each, with neighbours of one unit in the last place.
@@ -230,7 +231,7 @@ fn every_size_and_depth_is_drawn_as_computed() {
         let deep = discs((0..1024).flat_map(of));
         let settings = Settings { cull: Cull::None, ..pull_push::METHOD.settings() };
         let name = "deep".into();
-        let made = Shot { name, parts: (&deep).into(), camera, size, settings }.is_one(&device);
+        let made = FrameCase { name, parts: (&deep).into(), camera, size, settings }.is_one(&device);
         assert!(made.pyramids[0][0].samples.iter().all(Option::is_some), "{perspective}");
     }
     assert_silent(&device);
@@ -258,10 +259,10 @@ fn a_point_is_in_the_pixel_that_holds_it_however_near_the_border() {
     for camera in ahead(size) {
         let surfels = at_borders(&camera, size, f64::from(1.7f32));
         let settings = Settings { cull: Cull::None, ..pull_push::METHOD.settings() };
-        let twin = Reconstruction::new(&camera, size, &settings, settings.pull_push.unwrap()).unwrap();
-        let seen = twin.project(&surfels);
-        let shot = Shot { name: "borders".into(), parts: (&surfels).into(), camera, size, settings };
-        let made = shot.is_one(&device);
+        let reference = Reconstruction::new(&camera, size, &settings, settings.pull_push.unwrap()).unwrap();
+        let seen = reference.project(&surfels);
+        let case = FrameCase { name: "borders".into(), parts: (&surfels).into(), camera, size, settings };
+        let made = case.is_one(&device);
         let pixels = made.pyramids[0][0].samples.iter().zip(&seen.level.samples);
         let differ = pixels.clone().filter(|(made, own)| made.is_some() != own.is_some()).count();
         let known = pixels.filter(|(_, own)| own.is_some()).count();
@@ -280,10 +281,10 @@ fn a_device_without_64_bit_atomics_draws_points() {
     for (camera, method) in cameras(size).into_iter().zip(PRESETS) {
         let name = method.name.to_owned();
         let settings = method.settings();
-        let shot = Shot { name, parts: (&surfels).into(), camera, size, settings };
-        let [computed, drawn] = [&whole, &lesser].map(|device| shot.by(device, None));
+        let case = FrameCase { name, parts: (&surfels).into(), camera, size, settings };
+        let [computed, drawn] = [&whole, &lesser].map(|device| case.by(device, None));
         assert_eq!([computed.1, drawn.1], [Rasterizer::Compute, Rasterizer::Draw]);
-        assert_same(&shot.name, &drawn.0, &computed.0);
+        assert_same(&case.name, &drawn.0, &computed.0);
     }
     let model = scenes::model("scene:ribbon?segments=40&primitives=on").unwrap();
     let refused = |parts: Parts, rasterizer| {
@@ -308,8 +309,8 @@ fn many_windows_of_surfels_make_one_picture() {
     let surfels = scenes::open("scene:bumpy-sphere?points=70000&seed=1").unwrap();
     for (camera, method) in cameras([64, 64]).into_iter().zip(PRESETS) {
         let (name, settings) = (method.name.to_owned(), method.settings());
-        let shot = Shot { name, parts: (&surfels).into(), camera, size: [64, 64], settings };
-        assert_same(&shot.name, &shot.is_one(&whole), &shot.is_one(&lesser));
+        let case = FrameCase { name, parts: (&surfels).into(), camera, size: [64, 64], settings };
+        assert_same(&case.name, &case.is_one(&whole), &case.is_one(&lesser));
     }
     assert_silent(&whole);
     assert_silent(&lesser);

@@ -3,7 +3,7 @@
 
 use crate::support::gpu::{assert_silent, device};
 use crate::support::mesh;
-use crate::support::pyramids::{Made, Shot};
+use crate::support::pyramids::{FrameCase, Rendered};
 #[allow(dead_code)] // of what is shared
 use glam::DVec3;
 use std::sync::Arc;
@@ -46,7 +46,7 @@ fn is_interior(depths: &[f32], i: usize) -> bool {
 }
 
 /// Of a picture whose surface is taken for another if it is so far behind it.
-fn faults(truth: &[f32], made: &Made, behind: f64) -> Faults {
+fn faults(truth: &[f32], made: &Rendered, behind: f64) -> Faults {
     let frame = &made.frame;
     let count = |wrong: &dyn Fn(usize) -> bool| (0..truth.len()).filter(|&i| wrong(i)).count();
     Faults {
@@ -57,20 +57,20 @@ fn faults(truth: &[f32], made: &Made, behind: f64) -> Faults {
     }
 }
 
-fn shot<'a>(subject: &Subject, surfels: &'a Surfels, rules: Rules) -> Shot<'a> {
+fn case<'a>(subject: &Subject, surfels: &'a Surfels, rules: Rules) -> FrameCase<'a> {
     let pull_push = PullPush::of(rules);
     let settings = Settings { cull: Cull::Back, pull_push: Some(pull_push), ..Default::default() };
     let camera = subject.camera(&subject.viewpoint(), 0.0, SIZE).unwrap();
     let (name, precision) = (subject.name.clone(), Precision::Full);
-    Shot { name, parts: surfels.into(), camera, size: SIZE, settings, pull_push, precision }
+    FrameCase { name, parts: surfels.into(), camera, size: SIZE, settings, pull_push, precision }
 }
 
 /// The faults of the reference and of the GPU, if there is one.
-fn both(device: &Option<Arc<Device>>, shot: &Shot, truth: &[f32], behind: f64) -> Vec<Faults> {
-    let gpu = device.as_ref().map(|device| shot.by_gpu(device));
-    let made = [shot.by_twin()].into_iter().chain(gpu);
+fn both(device: &Option<Arc<Device>>, case: &FrameCase, truth: &[f32], behind: f64) -> Vec<Faults> {
+    let gpu = device.as_ref().map(|device| case.by_gpu(device));
+    let made = [case.by_reference()].into_iter().chain(gpu);
     let found: Vec<_> = made.map(|made| faults(truth, &made, behind)).collect();
-    println!("{} {:?}: {found:?} (reference, GPU)", shot.name, shot.pull_push.rules);
+    println!("{} {:?}: {found:?} (reference, GPU)", case.name, case.pull_push.rules);
     found
 }
 
@@ -97,13 +97,13 @@ fn a_scan_has_no_holes_and_does_not_leak() {
     let scale = (1.5 / spacings) as f32;
     let surfels = Surfels { radii: estimated.radii.iter().map(|r| r * scale).collect(), ..estimated.clone() };
     for rules in [Rules::Paper, Rules::Robust] {
-        for found in both(&device, &shot(&subject, &surfels, rules), &truth, behind) {
+        for found in both(&device, &case(&subject, &surfels, rules), &truth, behind) {
             let holds = found.holes <= 3 && found.leaks <= 5;
             assert_eq!(holds, rules == Rules::Robust, "{rules:?} {found:?}");
         }
     }
     println!("of {spacings:.2} spacings, as estimated:");
-    both(&device, &shot(&subject, &estimated, Rules::Robust), &truth, behind);
+    both(&device, &case(&subject, &estimated, Rules::Robust), &truth, behind);
     device.iter().for_each(|device| assert_silent(device));
 }
 
@@ -117,7 +117,7 @@ fn nothing_shines_through_a_layer() {
         let radius = surfels.radii.iter().copied().fold(0.0, f32::max);
         println!("{:.1} radii apart:", gap / f64::from(radius));
         for rules in [Rules::Paper, Rules::Robust] {
-            for found in both(&device, &shot(&subject, &surfels, rules), &truth, 0.5 * gap) {
+            for found in both(&device, &case(&subject, &surfels, rules), &truth, 0.5 * gap) {
                 let none = found == Faults::default();
                 assert_eq!(none, rules == Rules::Robust, "{rules:?}, {gap} apart: {found:?}");
             }

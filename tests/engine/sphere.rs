@@ -27,7 +27,7 @@ fn faults(found: &Differences, most_wrong_percent: f64) -> Vec<&'static str> {
     faults.into_iter().filter(|(fails, _)| *fails).map(|(_, fault)| fault).collect()
 }
 
-/// Compares a picture on white; what it covers is told by the same without a background.
+/// Compares a picture on white; its coverage comes from the same picture without a background.
 fn compare(truth: &Truth, transparent: &Picture, white: &Picture) -> Differences {
     truth.compare(|i| {
         let [r, g, b, _] = white.colour[i];

@@ -88,7 +88,7 @@ impl Layout {
         bytes
     }
 
-    /// What a scene is told of `surfels` in `buffer`.
+    /// Description of `surfels` in `buffer` for a scene.
     pub fn buffers(&self, surfels: &Surfels, buffer: vk::Buffer) -> Buffers {
         let values = |(offset, stride, format): Place| Values {
             buffer,

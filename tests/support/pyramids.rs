@@ -1,4 +1,4 @@
-//! Pull–push on the GPU, in the terms of the float64 twin.
+//! Pull–push on the GPU, in the terms of the float64 reference.
 
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
@@ -12,9 +12,9 @@ use surfel::{
     Outputs, Picture, Precision, PyramidLevel, PyramidSample, RenderOptions, Renderer, Scene, Settings,
 };
 
-/// A frame to be taken apart.
-pub struct Shot<'a> {
-    /// For messages.
+/// A frame whose passes are compared one by one.
+pub struct FrameCase<'a> {
+    /// Name for messages.
     pub name: String,
     pub parts: Parts<'a>,
     pub camera: Camera,
@@ -22,18 +22,18 @@ pub struct Shot<'a> {
     pub size: [u32; 2],
     pub settings: Settings,
     pub pull_push: PullPush,
-    /// Of the samples.
+    /// Float width of the samples.
     pub precision: Precision,
 }
 
-/// What became of a frame.
-pub struct Made {
+/// A frame with its pyramids.
+pub struct Rendered {
     pub frame: Frame,
     pub pyramid: Pyramid,
 }
 
-impl Shot<'_> {
-    /// The frame's twin.
+impl FrameCase<'_> {
+    /// The reference of the frame.
     pub fn reconstruction(&self) -> Reconstruction {
         let full = Reconstruction::new(&self.camera, self.size, &self.settings, self.pull_push).unwrap();
         let full = full.of(self.parts).unwrap();
@@ -55,17 +55,17 @@ impl Shot<'_> {
         (self.precision == Precision::Half).then_some(Compact { colours })
     }
 
-    /// By the twin, with as many levels as it needs.
-    pub fn by_twin(&self) -> Made {
-        let twin = self.reconstruction();
-        let visible = twin.project(self.parts).level;
+    /// Computes it by the reference, with as many levels as needed.
+    pub fn by_reference(&self) -> Rendered {
+        let reference = self.reconstruction();
+        let visible = reference.project(self.parts).level;
         let top = Reconstruction::top_level(&visible);
-        let pyramid = twin.pyramid(visible, top);
-        Made { frame: twin.shade(&pyramid.pushed[0]), pyramid }
+        let pyramid = reference.pyramid(visible, top);
+        Rendered { frame: reference.shade(&pyramid.pushed[0]), pyramid }
     }
 
     /// By the GPU.
-    pub fn by_gpu(&self, device: &Arc<Device>) -> Made {
+    pub fn by_gpu(&self, device: &Arc<Device>) -> Rendered {
         let scene = Scene::upload(device, self.parts).unwrap();
         let outputs = Outputs { normal: true, depth: true, id: true };
         let options =
@@ -73,13 +73,13 @@ impl Shot<'_> {
         let mut renderer = Renderer::new(device, options).unwrap();
         let (picture, _) = renderer.render_picture(&scene, &self.camera, &self.settings).unwrap();
         let levels = renderer.read_pyramids().unwrap().unwrap();
-        let as_twins =
+        let as_reference =
             |levels: Vec<PyramidLevel>| (0..).zip(levels).map(|(i, l)| self.level(i, &l)).collect();
-        let [pulled, pushed] = levels.map(as_twins);
-        Made { frame: frame_of(&picture), pyramid: Pyramid { pulled, pushed } }
+        let [pulled, pushed] = levels.map(as_reference);
+        Rendered { frame: frame_of(&picture), pyramid: Pyramid { pulled, pushed } }
     }
 
-    /// A level of the GPU's as the twin has them: normals are in eye space.
+    /// A GPU level in the reference's terms: normals are in eye space.
     fn level(&self, level: u32, made: &PyramidLevel) -> Level {
         let to_eye = DMat3::from_mat4(self.camera.view);
         let albedo = self.settings.lighting.albedo;
@@ -103,7 +103,7 @@ impl Shot<'_> {
     }
 }
 
-/// A picture with normals and depths as a frame of the twin's.
+/// A picture with normals and depths as a frame of the reference.
 fn frame_of(picture: &Picture) -> Frame {
     let (depths, normals) = (picture.depth.as_ref().unwrap(), picture.normal.as_ref().unwrap());
     Frame {

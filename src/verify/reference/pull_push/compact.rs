@@ -28,7 +28,7 @@ pub struct Steps {
     /// Of `far`, in units of distance.
     pub far: f64,
     /// Of a displacement coordinate, and of the radius, px.
-    pub place: f64,
+    pub displacement: f64,
     /// Of a normal's coordinate.
     pub normal: f64,
     /// Of a colour channel.
@@ -60,7 +60,7 @@ impl Compact {
         let brightest = sample.colour.max_element();
         Steps {
             far: step(sample.far - sample.near, 8, -126),
-            place: half_step(longest),
+            displacement: half_step(longest),
             // A step of one coordinate moves a point of the octahedron by up to √6 steps, and the point of the sphere
             // by √3 times as much.
             normal: 18f64.sqrt() / CODES,
@@ -184,7 +184,10 @@ mod tests {
                 let steps = compact.steps(&sample);
                 assert!((rounded.far - sample.far).abs() <= 0.5 * steps.far, "{sample:?}");
                 let moved = (rounded.displacement - sample.displacement).abs().max_element();
-                assert!(moved.max((rounded.radius - sample.radius).abs()) <= 0.5 * steps.place, "{sample:?}");
+                assert!(
+                    moved.max((rounded.radius - sample.radius).abs()) <= 0.5 * steps.displacement,
+                    "{sample:?}"
+                );
                 assert!(
                     (rounded.normal - sample.normal).abs().max_element() <= 0.5 * steps.normal,
                     "{sample:?}"
