@@ -109,9 +109,9 @@ use view::TargetView;
 pub use view::View;
 
 use crate::error::{Error, Result};
-use crate::frame::resources::{FrameResources, Retired};
+use crate::frame::resources::{Disposal, FrameResources};
 use crate::frame::targets::check_size;
-use crate::frame::uniforms::Blocks;
+use crate::frame::uniforms::Uniforms;
 use crate::frame::variant::Variant;
 use crate::frame::{FrameReport, RenderOptions};
 use crate::scene::instance::Instances;
@@ -163,7 +163,7 @@ pub struct Renderer {
 /// The composite pass and its view of a frame's targets.
 struct CompositeView {
     /// Number of the targets.
-    present: u64,
+    targets: u64,
     set: DescriptorSet,
     composite: Arc<Composite>,
 }
@@ -197,7 +197,7 @@ impl Renderer {
             deferred: DeferredDestruction::new(frames_in_flight)?,
             reports: Reports::new(frames_in_flight),
             composites: Vec::new(),
-            frame: FrameResources::new(device, options, Retired::Kept(Vec::new()), None)?,
+            frame: FrameResources::new(device, options, Disposal::Deferred(Vec::new()), None)?,
             target,
             device: device.clone(),
         })
@@ -222,7 +222,7 @@ impl Renderer {
         let pending = self.make(scenes.into(), view, settings);
         // Also after an error: replaced resources may be in use.
         self.deferred.extend(self.frame.take_deferred());
-        let (blocks, pending) = pending?;
+        let (uniforms, pending) = pending?;
         let scenes: Vec<_> = self.frame.scenes().collect();
         self.reports.begin(&self.device, &scenes)?;
         self.reports.mark(incomplete);
@@ -230,10 +230,10 @@ impl Renderer {
         let (timestamps, tail) = self.reports.present();
         // SAFETY: by the caller; there is a report for each frame in flight.
         let mut rec = unsafe { Recorder::of_host_timed(&self.device, cmd, timestamps) };
-        self.frame.record(&mut rec, &blocks);
+        self.frame.record(&mut rec, &uniforms);
         tail.record(&mut rec, &scenes);
-        if let Some(present) = self.frame.present() {
-            rec.wait(&Composite::reads(&present.targets));
+        if let Some(current) = self.frame.current() {
+            rec.wait(&Composite::reads(&current.targets));
         }
         self.pending = Some((pending, rec.later("composite")));
         Ok(())
@@ -307,17 +307,18 @@ impl Renderer {
         scenes: Instances<'_>,
         view: &View,
         settings: &Settings,
-    ) -> Result<(Blocks, PreparedDraw)> {
+    ) -> Result<(Uniforms, PreparedDraw)> {
         self.pending = None;
         let placed = scenes.placed(&self.device)?;
         let TargetView { area, size, camera, depth } = self.target_view(view)?;
         self.frame.resize(size);
-        let (blocks, variant) = self.frame.prepare(&placed, &camera, &without_background(settings), false)?;
+        let (uniforms, variant) =
+            self.frame.prepare(&placed, &camera, &without_background(settings), false)?;
         self.deferred.keep_scenes(&scenes);
         let composite = self.composite(&variant)?;
         self.view(composite)?;
         let place = layout::Composite { depth, origin: [area.offset.x, area.offset.y] };
-        Ok((blocks, PreparedDraw { place, area }))
+        Ok((uniforms, PreparedDraw { place, area }))
     }
 
     /// The view in the conventions of the target, which is validated.
@@ -329,13 +330,13 @@ impl Renderer {
 
     /// Updates the composite's view to the current targets.
     fn view(&mut self, composite: Arc<Composite>) -> Result<()> {
-        let Some(present) = self.frame.present() else { return Ok(()) };
+        let Some(current) = self.frame.current() else { return Ok(()) };
         let same = |viewed: &CompositeView| {
-            viewed.present == present.id && Arc::ptr_eq(&viewed.composite, &composite)
+            viewed.targets == current.id && Arc::ptr_eq(&viewed.composite, &composite)
         };
         if !self.viewed.as_ref().is_some_and(same) {
-            let set = composite.view(&self.device, &present.targets)?;
-            let old = self.viewed.replace(CompositeView { present: present.id, set, composite });
+            let set = composite.view(&self.device, &current.targets)?;
+            let old = self.viewed.replace(CompositeView { targets: current.id, set, composite });
             self.deferred.defer(old);
         }
         Ok(())

@@ -1,11 +1,11 @@
-//! The numbers of `lib/compact.glsl`, from their bits.
+//! Decodes the formats of `lib/compact.glsl`.
 
 /// Two half floats, the first in the lower bits.
 pub fn halves(bits: u32) -> [f32; 2] {
     [bits & 0xffff, bits >> 16].map(half)
 }
 
-/// A finite half float: as a float its exponent is 112 too small.
+/// A finite half float: its bits as a float have an exponent that is 112 too small.
 fn half(bits: u32) -> f32 {
     let size = f32::from_bits((bits & 0x7fff) << 13) * 2f32.powi(112);
     if bits >> 15 == 0 { size } else { -size }
@@ -16,7 +16,7 @@ pub fn length(bits: u32) -> f32 {
     f32::from_bits(bits << 15)
 }
 
-/// A unit vector by its place on an octahedron; zeros where there is none.
+/// A unit vector by its point on an octahedron; zeros for the code of no direction.
 pub fn direction(bits: u32) -> [f32; 3] {
     if bits == 0x8000_8000 {
         return [0.0; 3];

@@ -1,9 +1,9 @@
-//! What a frame is: decided from scenes, camera and settings, before anything is made.
+//! Frame description: variant and uniforms, decided from scenes, camera and settings before any resource is created.
 
 use super::rasterizer::{Fit, rasterizer_of, width_of_sums};
 use super::renderer::RenderOptions;
-use super::splat_list::{room_of_frame, team_of};
-use super::uniforms::Blocks;
+use super::splat_list::{extent_of_frame, workgroup_of};
+use super::uniforms::Uniforms;
 use super::variant::{SceneVariant, Variant};
 use crate::error::{Error, Result};
 use crate::geometry::Camera;
@@ -11,22 +11,22 @@ use crate::scene::instance::Placed;
 use crate::settings::Settings;
 use crate::vk::Device;
 
-/// What a frame is.
+/// Description of a frame.
 pub struct Description {
-    pub blocks: Blocks,
+    pub uniforms: Uniforms,
     pub variant: Variant,
-    /// What each of its scenes is.
+    /// Variants of its scenes.
     pub scenes: Vec<SceneVariant>,
 }
 
-/// What a frame of these scenes is, whose splats come in slices if they are `crowded`. Refuses what cannot be rendered.
+/// Describes a frame, whose splats come in slices if `sliced`; rejects unsupported frames.
 pub fn describe(
     device: &Device,
     options: &RenderOptions,
     scenes: &[Placed<'_>],
     camera: &Camera,
     settings: &Settings,
-    crowded: bool,
+    sliced: bool,
 ) -> Result<Description> {
     settings.check()?;
     for Placed { scene, .. } in scenes {
@@ -34,9 +34,9 @@ pub fn describe(
         settings.check_primitives(scene.primitives.is_some())?;
     }
     settings.check_outputs(options.outputs)?;
-    let blocks = Blocks::new(camera, settings, options.size, scenes)?;
-    let team = team_of(device, room_of_frame(device, scenes));
-    let fit = Fit::new(device, options, team.is_some(), crowded);
+    let uniforms = Uniforms::new(camera, settings, options.size, scenes)?;
+    let workgroup = workgroup_of(device, extent_of_frame(device, scenes));
+    let fit = Fit::new(device, options, workgroup.is_some(), sliced);
     let rasterizer = rasterizer_of(device, options, settings, scenes, fit)?;
     let perspective = camera.projection()?.perspective;
     let precision = match settings.pull_push {
@@ -46,23 +46,23 @@ pub fn describe(
     let options = RenderOptions { precision, ..*options };
     let streams: Vec<_> = scenes.iter().map(|placed| placed.scene.streams()).collect();
     let variant = Variant::new(&streams, perspective, settings, &options, rasterizer);
-    let variant = Variant { team: team.unwrap_or_default(), ..variant }.crowded(crowded);
+    let variant = Variant { workgroup: workgroup.unwrap_or_default(), ..variant }.with_slices(sliced);
     check_lookups(&variant, scenes)?;
-    let instanced = !blocks.instances.is_empty();
+    let instanced = !uniforms.instances.is_empty();
     let scenes = streams.into_iter().map(|streams| SceneVariant::new(variant, streams, instanced)).collect();
-    Ok(Description { blocks, variant, scenes })
+    Ok(Description { uniforms, variant, scenes })
 }
 
-/// Refuses several scenes of which one has what is looked up pixel by pixel, where there is but one table of it.
+/// Rejects several scenes if one has a texture or materials: pixels look them up in one table.
 fn check_lookups(variant: &Variant, scenes: &[Placed<'_>]) -> Result<()> {
     let refuse = |what: &str| {
         Err(Error::Usage(format!(
-            "{} scenes in a frame of pull-push, of which one has {what}, which its pixels look up as if all were of that scene: leave {what} \
-             out, show the scene alone, or choose a method that splats",
+            "{} scenes in a frame of pull-push, of which one has {what}, which pixels of all scenes would look up: remove {what}, render \
+             the scene alone, or choose a splatting method",
             scenes.len()
         )))
     };
-    // Coordinates are the same wherever the scene stands; the numbers of its points are not.
+    // Instances of one scene share texture coordinates, but not point ids.
     let alike = scenes.windows(2).all(|pair| pair[0].scene.id == pair[1].scene.id);
     if variant.texture.is_some() && !alike {
         return refuse("a texture");

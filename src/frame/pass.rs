@@ -1,6 +1,6 @@
-//! What a pass says of itself: its shaders, what they run over, what it reads and writes.
+//! Pass declarations: shaders, what their invocations run over, resources read and written.
 //!
-//! From this, and from what its shaders declare, come layouts, barriers, labels, timers and the list of passes of a frame.
+//! Layouts, barriers, labels, timers and the list of passes of a frame follow from these and from shader reflection.
 
 use super::recording::Frame;
 use super::resource::Resource;
@@ -8,15 +8,15 @@ use super::variant::{SceneVariant, Variant};
 use crate::vk::shaders::Module;
 use crate::vk::{Blend, Constants, DepthTest, Recorder, Topology};
 
-/// A pass. Passes of the same name do the same, by other means or in another step.
+/// A pass. Passes of one name are alternatives of, or steps of, the same computation.
 pub struct Pass {
-    /// Of its shader, label, timer, function in the reference and column in reports.
+    /// Name of the shader, debug label, timer, reference function and report column.
     pub name: &'static str,
-    /// What it reads of what other passes have written, as far as a frame has it.
+    /// Resources written by other passes that it reads, if the frame has them.
     pub reads: &'static [Resource],
-    /// What it writes, and maybe reads, beside what it draws to.
+    /// Resources that it writes and may read, without its attachments.
     pub writes: &'static [Resource],
-    /// What is emptied before.
+    /// Resources cleared before it.
     pub clears: &'static [Resource],
     /// Its pipelines.
     pub programs: Programs,
@@ -26,56 +26,56 @@ pub struct Pass {
 
 /// The pipelines of a pass.
 pub enum Programs {
-    /// None: it copies.
+    /// None: the pass copies.
     None,
-    /// The same for all scenes of a frame.
+    /// One set for all scenes of a frame.
     OfFrame(fn(&Variant) -> Vec<Program>),
-    /// Of each scene.
+    /// One set per scene.
     OfScene(fn(&SceneVariant) -> Vec<Program>),
 }
 
 /// The commands of a pass.
 pub enum Commands {
-    /// A dispatch of each program.
+    /// One dispatch per program.
     Dispatches,
-    /// A draw of each program.
-    Draws(Targets),
-    /// Several steps, each of which waits for the one before.
-    Steps(fn(&Steps<'_>, &mut Recorder<'_>)),
+    /// One draw per program.
+    Draws(DrawTargets),
+    /// Several steps, with a barrier between them.
+    Steps(fn(&StepContext<'_>, &mut Recorder<'_>)),
 }
 
-/// What a pass of several steps is recorded with.
-pub struct Steps<'a> {
-    /// Its only program.
+/// Context in which the steps of a pass are recorded.
+pub struct StepContext<'a> {
+    /// Its only pipeline.
     pub pipeline: Option<&'a crate::vk::ComputePipeline>,
-    /// Descriptor set 1, if it has a program.
+    /// Descriptor set 1, if it has a pipeline.
     pub targets: Option<&'a crate::vk::DescriptorSet>,
     /// The frame.
     pub frame: &'a Frame<'a>,
 }
 
-/// What a pass draws to, and how.
-pub struct Targets {
-    /// Colours at the locations 0, 1, …; what a frame lacks is not written.
-    pub colours: &'static [(Resource, Start)],
-    /// Depth.
-    pub depth: Option<(Resource, Start)>,
-    /// What is drawn.
+/// Attachments and fixed-function state of a raster pass.
+pub struct DrawTargets {
+    /// Colour attachments at locations 0, 1, …; those that the frame lacks are absent.
+    pub colours: &'static [(Resource, InitialContents)],
+    /// Depth attachment.
+    pub depth: Option<(Resource, InitialContents)>,
+    /// Primitive topology.
     pub topology: Topology,
     /// Depth test.
     pub test: DepthTest,
-    /// Blending of all colours.
+    /// Blending of all colour attachments.
     pub blend: Blend,
 }
 
-/// What is in a target when a pass begins to draw to it.
+/// Contents of an attachment when the render pass begins (its load operation).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Start {
+pub enum InitialContents {
     /// Zeros.
     Cleared,
-    /// What does not matter: every pixel is written.
+    /// Undefined: every pixel is written.
     Overwritten,
-    /// What an earlier pass has left, which stays.
+    /// The result of an earlier pass, which is only tested.
     Tested,
 }
 
@@ -83,58 +83,58 @@ pub enum Start {
 pub struct Program {
     /// Its shaders.
     pub stages: Stages,
-    /// Specialization constants beside those of the frame or the scene.
+    /// Specialization constants in addition to those of the frame or the scene.
     pub constants: Constants,
-    /// What it runs over.
-    pub over: Over,
+    /// Domain of its invocations.
+    pub domain: Domain,
 }
 
 /// The shaders of a pipeline.
 #[derive(Clone, Copy)]
 pub enum Stages {
-    /// One.
+    /// A compute shader.
     Compute(&'static Module),
     /// Vertex and fragment shader.
     Draw([&'static Module; 2]),
 }
 
-/// What a program runs over.
+/// Domain of a program's invocations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Over {
-    /// An invocation a surfel.
+pub enum Domain {
+    /// One invocation per surfel.
     Surfels,
-    /// An invocation for each surfel that there is room for, in all instances.
-    Slots,
-    /// An invocation a pixel, for each part of a scene's surfels that one descriptor set names.
+    /// One invocation per surfel of the capacity, in all instances.
+    SurfelSlots,
+    /// One invocation per pixel, for each chunk of a scene's surfels.
     PixelsOfSurfels,
-    /// An invocation a segment.
+    /// One invocation per segment.
     Lines,
-    /// An invocation a pixel.
+    /// One invocation per pixel.
     PixelsOfLines,
-    /// An invocation a triangle.
+    /// One invocation per triangle.
     Triangles,
-    /// Workgroups that share the large triangles.
+    /// Workgroups that share the list of large triangles.
     LargeTriangles,
-    /// An invocation a pixel.
+    /// One invocation per pixel.
     PixelsOfTriangles,
-    /// An invocation a pixel.
+    /// One invocation per pixel.
     Pixels,
-    /// A workgroup a tile.
+    /// One workgroup per tile.
     Tiles,
-    /// Pixels of a pyramid's level, as the pass's steps say.
+    /// Elements of a level, as the steps of the pass define.
     Level,
-    /// A triangle a splat.
+    /// One triangle per splat.
     SplatTriangles,
-    /// A point a surfel.
+    /// One point per surfel.
     Points,
-    /// A triangle over the picture.
+    /// One triangle over the viewport.
     FullScreen,
 }
 
-/// What of the frame descriptor set 0 is of.
+/// Owner of descriptor set 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Scope {
-    /// All scenes.
+    /// The frame.
     View,
     /// A scene's surfels.
     Surfels,
@@ -144,13 +144,15 @@ pub enum Scope {
     Triangles,
 }
 
-impl Over {
-    /// What descriptor set 0 is of.
+impl Domain {
+    /// Owner of descriptor set 0.
     pub fn scope(self) -> Scope {
         match self {
-            Self::Surfels | Self::Slots | Self::PixelsOfSurfels | Self::SplatTriangles | Self::Points => {
-                Scope::Surfels
-            }
+            Self::Surfels
+            | Self::SurfelSlots
+            | Self::PixelsOfSurfels
+            | Self::SplatTriangles
+            | Self::Points => Scope::Surfels,
             Self::Lines | Self::PixelsOfLines => Scope::Lines,
             Self::Triangles | Self::LargeTriangles | Self::PixelsOfTriangles => Scope::Triangles,
             Self::Pixels | Self::Tiles | Self::Level | Self::FullScreen => Scope::View,
@@ -160,16 +162,16 @@ impl Over {
 
 impl Program {
     /// A compute shader.
-    pub fn compute(module: &'static Module, over: Over) -> Self {
-        Self { stages: Stages::Compute(module), constants: Constants::default(), over }
+    pub fn compute(module: &'static Module, domain: Domain) -> Self {
+        Self { stages: Stages::Compute(module), constants: Constants::default(), domain }
     }
 
     /// A vertex and a fragment shader.
-    pub fn draw(modules: [&'static Module; 2], over: Over) -> Self {
-        Self { stages: Stages::Draw(modules), constants: Constants::default(), over }
+    pub fn draw(modules: [&'static Module; 2], domain: Domain) -> Self {
+        Self { stages: Stages::Draw(modules), constants: Constants::default(), domain }
     }
 
-    /// With another specialization constant.
+    /// Adds a specialization constant.
     pub fn with(self, id: u32, value: impl Into<u32>) -> Self {
         Self { constants: self.constants.with(id, value), ..self }
     }
@@ -190,8 +192,8 @@ impl Stages {
 }
 
 impl Pass {
-    /// Whether it reads or writes what shaders see as this.
-    pub fn sees(&self, shader: &crate::vk::shaders::Resource) -> bool {
-        self.reads.iter().chain(self.writes).any(|resource| resource.is_seen_as(shader))
+    /// Whether the pass reads or writes a resource that shaders declare as `shader`.
+    pub fn binds(&self, shader: &crate::vk::shaders::Resource) -> bool {
+        self.reads.iter().chain(self.writes).any(|resource| resource.is_bound_as(shader))
     }
 }

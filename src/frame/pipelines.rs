@@ -1,8 +1,8 @@
-//! The pipelines of passes, made as variants come up, and kept.
+//! Pipelines of passes, created on first use of a variant and cached.
 
 use super::methods::{Path, passes};
 use super::pass::{Commands, Pass, Program, Programs, Stages};
-use super::recording::{Pipeline, Pipelines as OfPass};
+use super::recording::{Pipeline, Pipelines as PassPipelines};
 use super::variant::{SceneVariant, Variant};
 use super::{pyramids, targets};
 use crate::error::Result;
@@ -14,19 +14,19 @@ use crate::vk::{
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// The pipelines of a renderer.
+/// Pipeline cache of a renderer.
 pub struct Pipelines {
-    of_frames: HashMap<(usize, Variant), OfPass>,
-    of_scenes: HashMap<(usize, SceneVariant), OfPass>,
+    frame_pipelines: HashMap<(usize, Variant), PassPipelines>,
+    scene_pipelines: HashMap<(usize, SceneVariant), PassPipelines>,
     render_passes: HashMap<(usize, Variant), Arc<RenderPass>>,
     host: Option<Host>,
 }
 
-/// Where a host has passes drawn: in subpasses of its own.
+/// Subpasses of a host in which raster passes are drawn.
 pub struct Host {
     /// The passes with their subpasses.
     pub draws: Vec<HostDraw>,
-    /// What shaders see at descriptor set 1, beside coverage.
+    /// Resources of descriptor set 1, without coverage.
     pub resources: Vec<&'static shaders::Resource>,
 }
 
@@ -35,81 +35,87 @@ pub struct HostDraw {
     pub pass: &'static Pass,
     pub within: Within,
     pub depth: DepthTest,
-    /// Specialization constants beside those of the frame.
+    /// Specialization constants in addition to those of the frame.
     pub constants: Constants,
-    /// The fragment shader, where it is another.
+    /// Replacement of the fragment shader.
     pub fragment: Option<&'static shaders::Module>,
 }
 
-/// What tells passes apart.
+/// Identity of a pass, as a map key.
 fn key(pass: &'static Pass) -> usize {
     std::ptr::from_ref(pass).addr()
 }
 
 impl Pipelines {
-    /// None yet; of a host, if one is given.
+    /// An empty cache; with `host`, raster passes are drawn in its subpasses.
     pub fn new(host: Option<Host>) -> Self {
-        Self { of_frames: HashMap::new(), of_scenes: HashMap::new(), render_passes: HashMap::new(), host }
+        Self {
+            frame_pipelines: HashMap::new(),
+            scene_pipelines: HashMap::new(),
+            render_passes: HashMap::new(),
+            host,
+        }
     }
 
-    /// The passes of a frame of `variant`, of so many scenes.
+    /// The passes of a frame of `variant` with so many scenes.
     pub fn passes(&self, variant: &Variant, scenes: usize) -> Vec<&'static Pass> {
         let Some(host) = &self.host else { return passes(variant, Path::of(variant), scenes) };
         let seed = host.draws.iter().any(|draw| draw.pass.name == "seed");
         passes(variant, Path::Subpasses { seed }, scenes)
     }
 
-    /// Whether what is drawn is drawn in subpasses of a host.
+    /// Whether raster passes are drawn in subpasses of a host.
     pub fn has_host(&self) -> bool {
         self.host.is_some()
     }
 
     /// Whether a pass is drawn in a subpass of the host.
-    pub fn is_of_host(&self, pass: &'static Pass) -> bool {
+    pub fn is_host_pass(&self, pass: &'static Pass) -> bool {
         self.host.as_ref().is_some_and(|host| host.draws.iter().any(|draw| std::ptr::eq(draw.pass, pass)))
     }
 
-    /// The pipelines of a pass, those of the frame or of each scene, and how it touches what it reads and writes.
-    pub fn of(
+    /// The pipelines of a pass: one set for the frame, or one per scene.
+    pub fn for_pass(
         &mut self,
         device: &Arc<Device>,
         pass: &'static Pass,
         variant: &Variant,
         scenes: &[SceneVariant],
-    ) -> Result<Vec<OfPass>> {
+    ) -> Result<Vec<PassPipelines>> {
         match pass.programs {
             Programs::None => Ok(Vec::new()),
             Programs::OfFrame(programs) => {
-                if let Some(made) = self.of_frames.get(&(key(pass), *variant)) {
-                    return Ok(vec![made.clone()]);
+                if let Some(pipelines) = self.frame_pipelines.get(&(key(pass), *variant)) {
+                    return Ok(vec![pipelines.clone()]);
                 }
                 let view = |_: &Program| variant.view_resources();
-                let made =
+                let pipelines =
                     self.make(device, pass, programs(variant), variant, &variant.constants(), &view)?;
-                self.of_frames.insert((key(pass), *variant), made.clone());
-                Ok(vec![made])
+                self.frame_pipelines.insert((key(pass), *variant), pipelines.clone());
+                Ok(vec![pipelines])
             }
             Programs::OfScene(programs) => {
                 let mut all = Vec::with_capacity(scenes.len());
                 for scene in scenes {
-                    let made = match self.of_scenes.get(&(key(pass), *scene)) {
-                        Some(made) => made.clone(),
+                    let pipelines = match self.scene_pipelines.get(&(key(pass), *scene)) {
+                        Some(pipelines) => pipelines.clone(),
                         None => {
-                            let own = |program: &Program| scene.resources(program.over.scope());
+                            let resources = |program: &Program| scene.resources(program.domain.scope());
                             let constants = scene.constants();
-                            let made = self.make(device, pass, programs(scene), variant, &constants, &own)?;
-                            self.of_scenes.insert((key(pass), *scene), made.clone());
-                            made
+                            let pipelines =
+                                self.make(device, pass, programs(scene), variant, &constants, &resources)?;
+                            self.scene_pipelines.insert((key(pass), *scene), pipelines.clone());
+                            pipelines
                         }
                     };
-                    all.push(made);
+                    all.push(pipelines);
                 }
                 Ok(all)
             }
         }
     }
 
-    /// What a pass draws to, unless that is a host's.
+    /// The render pass of a raster pass; `None` in subpasses of a host.
     pub fn render_pass(
         &mut self,
         device: &Arc<Device>,
@@ -117,16 +123,16 @@ impl Pipelines {
         variant: &Variant,
     ) -> Result<Option<Arc<RenderPass>>> {
         let Commands::Draws(targets) = &pass.commands else { return Ok(None) };
-        if self.is_of_host(pass) {
+        if self.is_host_pass(pass) {
             return Ok(None);
         }
-        if let Some(made) = self.render_passes.get(&(key(pass), *variant)) {
-            return Ok(Some(made.clone()));
+        if let Some(render_pass) = self.render_passes.get(&(key(pass), *variant)) {
+            return Ok(Some(render_pass.clone()));
         }
         let (colours, depth) = targets.attachments(variant);
-        let made = Arc::new(RenderPass::new(device, &colours, depth)?);
-        self.render_passes.insert((key(pass), *variant), made.clone());
-        Ok(Some(made))
+        let render_pass = Arc::new(RenderPass::new(device, &colours, depth)?);
+        self.render_passes.insert((key(pass), *variant), render_pass.clone());
+        Ok(Some(render_pass))
     }
 
     fn make(
@@ -137,9 +143,9 @@ impl Pipelines {
         variant: &Variant,
         constants: &Constants,
         first_set: &dyn Fn(&Program) -> Vec<&'static shaders::Resource>,
-    ) -> Result<OfPass> {
+    ) -> Result<PassPipelines> {
         let render_pass = self.render_pass(device, pass, variant)?;
-        let mut made = Vec::with_capacity(programs.len());
+        let mut pipelines = Vec::with_capacity(programs.len());
         for program in programs {
             let layouts = self.layouts(device, pass, &program, variant, first_set(&program))?;
             let sets: Vec<&SetLayout> = layouts.iter().map(Arc::as_ref).collect();
@@ -154,18 +160,18 @@ impl Pipelines {
                         let state = DrawState { topology, depth, blend };
                         DrawPipeline::new(device, &sets, modules, &constants, into, state)?
                     }
-                    _ => match self.draw_of_host(device, pass, &sets, modules, &constants)? {
+                    _ => match self.host_pipeline(device, pass, &sets, modules, &constants)? {
                         Some(pipeline) => pipeline,
                         None => continue,
                     },
                 }),
             };
-            made.push((program.over, pipeline));
+            pipelines.push((program.domain, pipeline));
         }
-        Ok(Arc::new(made))
+        Ok(Arc::new(pipelines))
     }
 
-    fn draw_of_host(
+    fn host_pipeline(
         &self,
         device: &Arc<Device>,
         pass: &'static Pass,
@@ -180,8 +186,8 @@ impl Pipelines {
         DrawPipeline::of_host(device, sets, code, &constants, &draw.within, draw.depth).map(Some)
     }
 
-    /// Layouts of the descriptor sets 0, 1, … that a program sees: of all scenes or one, of the targets, of counts or the pyramid that it
-    /// writes, and of the one that it reads.
+    /// Layouts of descriptor sets 0, 1, … of a program: frame or scene, targets, counts or the pyramid that is written, and the pyramid
+    /// that is read.
     fn layouts(
         &self,
         device: &Arc<Device>,
@@ -190,13 +196,15 @@ impl Pipelines {
         variant: &Variant,
         first: Vec<&'static shaders::Resource>,
     ) -> Result<Vec<Arc<SetLayout>>> {
-        let seen =
+        let declared =
             || program.modules().iter().flat_map(|module| module.resources).map(|(resource, _)| *resource);
-        // What is not counted is in no set of its own.
-        let seen_and_there = seen().filter(|seen| variant.count || *seen != &shaders::resource::COUNTS);
-        let count = seen_and_there.map(|resource| resource.set + 1).max().unwrap_or_default();
+        // Frames without counts have no set for them.
+        let bound = declared().filter(|resource| variant.count || *resource != &shaders::resource::COUNTS);
+        let count = bound.map(|resource| resource.set + 1).max().unwrap_or_default();
         let resources = |set| match set {
-            2 if seen().any(|seen| seen == &shaders::resource::COUNTS) => vec![&shaders::resource::COUNTS],
+            2 if declared().any(|resource| resource == &shaders::resource::COUNTS) => {
+                vec![&shaders::resource::COUNTS]
+            }
             0 => first.clone(),
             1 => match &self.host {
                 Some(host) => {
@@ -209,7 +217,7 @@ impl Pipelines {
         };
         let resources = |set| {
             let mut list = resources(set);
-            list.retain(|resource| set != 1 || pass.sees(resource));
+            list.retain(|resource| set != 1 || pass.binds(resource));
             list
         };
         (0..count).map(|set| SetLayout::of(device, resources(set))).collect()

@@ -1,4 +1,4 @@
-//! What a frame is made of, without making it.
+//! Frame plans: passes and targets of a frame, without creating it.
 
 use super::methods::{Path, passes};
 use super::renderer::RenderOptions;
@@ -13,16 +13,16 @@ use crate::settings::Settings;
 /// The passes and targets of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FramePlan {
-    /// The passes in their order; what only clears or reads back is none.
+    /// The passes in their order, without clears and readback.
     pub passes: Vec<&'static str>,
-    /// The targets, each with the bytes of a pixel. Where a target has less than one value a pixel, that is a fraction.
+    /// The targets with their bytes per pixel; fractions if a target has less than one value per pixel.
     pub targets: Vec<(&'static str, f64)>,
-    /// Bytes of a splat with what belongs to it, one a surfel; 0 where none are made.
+    /// Bytes of a splat with its box and attributes; 0 without splats.
     pub splat: u64,
 }
 
 impl FramePlan {
-    /// The frame of scenes with these streams by a rasterizer, whatever the device can do; `perspective` or parallel rays.
+    /// Plans a frame of scenes with these streams, regardless of the device; `perspective` or parallel rays.
     pub fn new(
         scenes: &[Streams],
         perspective: bool,
@@ -33,7 +33,7 @@ impl FramePlan {
         let variant = Variant::new(scenes, perspective, settings, options, rasterizer);
         let passes = passes(&variant, Path::of(&variant), scenes.len());
         let mut names: Vec<_> = passes.iter().map(|pass| pass.name).collect();
-        // A pass may take several steps.
+        // Steps of one pass have one name.
         names.dedup();
         let splat = match (variant.pull_push, variant.is_tiled()) {
             (Some(_), _) => 0,

@@ -1,33 +1,33 @@
-//! Pyramids copied to the CPU.
+//! Readback of pyramids.
 
 use super::compact;
-use super::pyramids::{PLANES, Pyramid, Pyramids};
+use super::pyramids::{ATTRIBUTES, Pyramid, Pyramids};
 use crate::error::Result;
 use crate::vk::{Access, Buffer, Commands, Device, pixel_bytes};
 use std::sync::Arc;
 
-/// What a pixel of a level of a pyramid knows, as `lib/pyramid.glsl` has it.
+/// A pixel of a pyramid level, as in `lib/pyramid.glsl`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PyramidSample {
-    /// Least distance from which on the surface is.
+    /// Least distance of the surface.
     pub near: f32,
-    /// Greatest distance up to which another surface is the same.
+    /// Greatest distance of samples of the same surface.
     pub far: f32,
     /// Distance of the disc's centre.
     pub depth: f32,
-    /// Of the disc seen face-on, px.
+    /// Radius of the disc seen face-on, px.
     pub radius: f32,
-    /// Of the disc's centre from the pixel's, px.
+    /// Displacement of the disc's centre from the pixel's, px.
     pub displacement: [f32; 2],
-    /// World space; of a tube, the tangent.
+    /// Normal, world space; of a tube, the tangent.
     pub normal: [f32; 3],
-    /// Whether it is of a tube: the disc faces the eye, about a point of the axis.
+    /// Whether it is of a tube: the disc faces the eye, around a point of the axis.
     pub tube: bool,
-    /// Linear; in pyramids that have colours.
+    /// Linear colour, in pyramids with colours.
     pub colour: Option<[f32; 3]>,
-    /// Of the disc's centre in the texture; in pyramids of what has one.
+    /// Texture coordinates of the disc's centre, in pyramids with a texture.
     pub coordinates: Option<[f32; 2]>,
-    /// Number of the point that it is, or that is nearest of those that it was made of; in pyramids that have numbers.
+    /// Id of the point, or of the nearest of those that were averaged, in pyramids with ids.
     pub id: Option<u32>,
 }
 
@@ -36,18 +36,18 @@ pub struct PyramidSample {
 pub struct PyramidLevel {
     /// Width and height, pixels of this level.
     pub size: [u32; 2],
-    /// Row by row from the top left; `None` where nothing is known.
+    /// Samples row by row from the top left; `None` if empty.
     pub samples: Vec<Option<PyramidSample>>,
 }
 
-/// The planes of a pyramid, each with the words of a sample.
-type Words = [(usize, Vec<u32>); PLANES];
+/// Words of the attribute buffers, each with its words per sample.
+type Words = [(usize, Vec<u32>); ATTRIBUTES];
 
 impl PyramidSample {
-    /// Of its words in each plane, as `lib/pyramid.glsl` has them.
-    fn of(words: [&[u32]; PLANES], unbounded_colours: bool) -> Option<Self> {
+    /// Decodes the words of a sample.
+    fn of(words: [&[u32]; ATTRIBUTES], unbounded_colours: bool) -> Option<Self> {
         match words {
-            [&[near, depth], &[place, size], &[normal], colour, id] => {
+            [&[near, depth], &[displacement, size], &[normal], colour, id] => {
                 let near = f32::from_bits(near);
                 let [radius, _] = compact::halves(size);
                 let known = Self {
@@ -55,7 +55,7 @@ impl PyramidSample {
                     far: near + compact::length(size >> 16),
                     depth: f32::from_bits(depth),
                     radius: radius.abs(),
-                    displacement: compact::halves(place),
+                    displacement: compact::halves(displacement),
                     normal: compact::direction(normal),
                     tube: size >> 15 & 1 != 0,
                     colour: match (colour, unbounded_colours) {
@@ -72,50 +72,52 @@ impl PyramidSample {
         }
     }
 
-    fn of_floats(words: [&[u32]; PLANES]) -> Option<Self> {
+    fn of_floats(words: [&[u32]; ATTRIBUTES]) -> Option<Self> {
         let id = words[4].first().copied();
-        let [depths, place, normal, colour, _] = words.map(|words| words.iter().copied().map(f32::from_bits));
+        let [depths, displacement, normal, colour, _] =
+            words.map(|words| words.iter().copied().map(f32::from_bits));
         let [near, far, depth, radius] = all(depths)?;
         let (tube, radius) = (radius.is_sign_negative(), radius.abs());
-        let (displacement, normal) = (all(place)?, all(normal)?);
+        let (displacement, normal) = (all(displacement)?, all(normal)?);
         let (colour, coordinates) = (all(colour.clone()), all(colour));
         let known = Self { near, far, depth, radius, displacement, normal, tube, colour, coordinates, id };
         (near != 0.0).then_some(known)
     }
 }
 
-/// So many numbers, if there are.
-fn all<const N: usize>(numbers: impl Iterator<Item = f32>) -> Option<[f32; N]> {
-    numbers.collect::<Vec<_>>().try_into().ok()
+/// The values as an array, if there are exactly `N`.
+fn all<const N: usize>(values: impl Iterator<Item = f32>) -> Option<[f32; N]> {
+    values.collect::<Vec<_>>().try_into().ok()
 }
 
 impl Pyramid {
     fn read(&self, device: &Arc<Device>) -> Result<Words> {
         let mut words: Words = Default::default();
-        for (plane, read) in self.planes.iter().zip(&mut words) {
-            let Some(plane) = plane else { continue };
-            let size = plane.buffer.size();
+        for (attribute, read) in self.attributes.iter().zip(&mut words) {
+            let Some(attribute) = attribute else { continue };
+            let size = attribute.buffer.size();
             let target = Buffer::readback(device, "read pyramid", size)?;
             Commands::new(device, false)?.run(|rec| {
-                let uses = [plane.buffer.with(Access::COPY_READ), target.with(Access::COPY_WRITE)];
-                rec.pass("read pyramid", &uses).copy(&plane.buffer, &target, 0, size);
+                let uses = [attribute.buffer.with(Access::COPY_READ), target.with(Access::COPY_WRITE)];
+                rec.pass("read pyramid", &uses).copy(&attribute.buffer, &target, 0, size);
                 rec.wait(&[target.with(Access::HOST_READ)]);
             })?;
-            *read = (pixel_bytes(plane.format) as usize / 4, bytemuck::pod_collect_to_vec(target.bytes()));
+            *read =
+                (pixel_bytes(attribute.format) as usize / 4, bytemuck::pod_collect_to_vec(target.bytes()));
         }
         Ok(words)
     }
 }
 
 impl Pyramids {
-    /// Copies the levels of the last frame, fine to coarse, as they were pulled and as they were pushed, to the CPU.
+    /// Reads back the levels of the last frame, fine to coarse: pulled and pushed.
     pub fn read(&self, device: &Arc<Device>) -> Result<[Vec<PyramidLevel>; 2]> {
         let [first, second] = [0, 1].map(|i| self.pyramids[i].read(device));
         let pyramids = [first?, second?];
-        let levels = |made: &dyn Fn(u32) -> usize| {
-            (0..self.levels()).map(|level| self.level_of(&pyramids[made(level)], level)).collect()
+        let levels = |pyramid_of: &dyn Fn(u32) -> usize| {
+            (0..self.levels()).map(|level| self.level_of(&pyramids[pyramid_of(level)], level)).collect()
         };
-        // What was pulled is where the push read it.
+        // Pulled levels are in the pyramid that push reads.
         Ok([levels(&|level| self.storage.push(level)[0]), levels(&|level| self.storage.push(level)[1])])
     }
 

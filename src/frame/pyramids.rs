@@ -1,4 +1,4 @@
-//! The targets of pull–push: two pyramids of samples, plane by plane (`lib/pyramid.glsl`).
+//! Pyramids of pull–push: two pyramids of samples, an attribute buffer per group of attributes (`lib/pyramid.glsl`).
 
 use super::recording::grid_over;
 use super::renderer::RenderOptions;
@@ -16,36 +16,36 @@ use std::sync::Arc;
 
 /// The pyramids of pull–push.
 pub struct Pyramids {
-    // Sets go before what they name.
-    /// What passes see of each: descriptor sets 2 and 3.
+    // Drop order: sets before the buffers in them.
+    /// Descriptor sets 2 and 3 of each.
     pub sets: [DescriptorSet; 2],
-    /// Which of these holds what: [`Storage`].
+    /// The pyramids, in the roles that [`Storage`] gives them.
     pub pyramids: [Pyramid; 2],
-    /// Where the levels are kept.
+    /// Assignment of levels to pyramids.
     pub storage: Storage,
-    /// Of the picture, px.
+    /// Size of the viewport, px.
     size: [u32; 2],
 }
 
 /// Samples of all levels, fine to coarse.
 pub struct Pyramid {
-    /// What the scene lacks has none.
-    pub(crate) planes: [Option<Plane>; PLANES],
+    /// Attributes that the scene lacks have no buffer.
+    pub(crate) attributes: [Option<AttributeBuffer>; ATTRIBUTES],
 }
 
-/// A group of attributes of all samples of a pyramid.
-pub(crate) struct Plane {
+/// Buffer of one group of attributes of all samples.
+pub(crate) struct AttributeBuffer {
     pub name: &'static str,
-    /// Of a sample.
+    /// Format of a sample.
     pub format: Format,
     pub buffer: Buffer,
 }
 
-/// How many planes a pyramid may have, one a binding: depths, places, normals, colours or coordinates in a texture, numbers of points.
-pub(crate) const PLANES: usize = 5;
+/// Most attribute buffers of a pyramid, one per binding: depths, displacements, normals, colours or texture coordinates, point ids.
+pub(crate) const ATTRIBUTES: usize = 5;
 
-/// Where shaders see the planes: in set 2, and in the same places of set 3.
-const BINDINGS: [&shaders::Resource; PLANES] = [
+/// Resources of the attribute buffers in set 2; set 3 has the same bindings.
+const BINDINGS: [&shaders::Resource; ATTRIBUTES] = [
     &resource::TO_DEPTHS,
     &resource::TO_DISPLACEMENTS,
     &resource::TO_NORMALS,
@@ -53,23 +53,23 @@ const BINDINGS: [&shaders::Resource; PLANES] = [
     &resource::TO_IDS,
 ];
 
-/// The planes of a pyramid of `variant`, each by the format of a sample.
-fn formats(variant: &Variant) -> [Option<Format>; PLANES] {
-    let [depths, places, normals, colours, ids] = match variant.precision {
+/// Formats of a pyramid's attribute buffers in frames of `variant`.
+fn formats(variant: &Variant) -> [Option<Format>; ATTRIBUTES] {
+    let [depths, displacements, normals, colours, ids] = match variant.precision {
         Precision::Full => FULL,
         Precision::Half => compact(variant.unbounded_colours),
     };
-    // A texture has the colours.
+    // With a texture, samples have coordinates instead.
     let coordinates = variant.texture.map(|_| Format::R32G32_SFLOAT);
     let colours = coordinates.or_else(|| variant.colours.then_some(colours));
-    [Some(depths), Some(places), Some(normals), colours, variant.has_ids().then_some(ids)]
+    [Some(depths), Some(displacements), Some(normals), colours, variant.has_ids().then_some(ids)]
 }
 
-/// The plane of colours.
+/// Index of the colour buffer.
 const COLOURS: usize = 3;
 
-/// The planes of 32-bit floats: 48 bytes a sample, 36 without colours; and 4 for a number.
-const FULL: [Format; PLANES] = [
+/// Full precision: 48 bytes per sample, 36 without colours, and 4 for an id.
+const FULL: [Format; ATTRIBUTES] = [
     Format::R32G32B32A32_SFLOAT,
     Format::R32G32_SFLOAT,
     Format::R32G32B32_SFLOAT,
@@ -77,13 +77,11 @@ const FULL: [Format; PLANES] = [
     Format::R32_UINT,
 ];
 
-/// The compact planes (`lib/compact.glsl`): 24 bytes a sample, 20 without colours, and 4 for a number. Of the places three numbers are half
-/// floats, and one has more exponent; bounded colours are square roots.
-fn compact(unbounded_colours: bool) -> [Format; PLANES] {
-    let colours = match unbounded_colours {
-        true => Format::E5B9G9R9_UFLOAT_PACK32,
-        false => Format::A2B10G10R10_UNORM_PACK32,
-    };
+/// Compact formats (`lib/compact.glsl`): 24 bytes per sample, 20 without colours, and 4 for an id. Displacement and radius are half floats,
+/// far − near has a longer exponent; bounded colours are square roots.
+fn compact(unbounded_colours: bool) -> [Format; ATTRIBUTES] {
+    let colours =
+        if unbounded_colours { Format::E5B9G9R9_UFLOAT_PACK32 } else { Format::A2B10G10R10_UNORM_PACK32 };
     [Format::R32G32_SFLOAT, Format::R32G32_UINT, Format::R16G16_SNORM, colours, Format::R32_UINT]
 }
 
@@ -91,16 +89,16 @@ fn storage(variant: &Variant) -> Storage {
     variant.pull_push.map_or(Storage::Apart, |pull_push| pull_push.storage)
 }
 
-/// What the planes of either pyramid are called. In shaders they are `from_depths`, `to_depths` and so on, by what a pass does with them.
-fn names(storage: Storage) -> [[&'static str; PLANES]; 2] {
+/// Debug names of both pyramids' attribute buffers. Shaders name them by role: `from_depths`, `to_depths` and so on.
+fn names(storage: Storage) -> [[&'static str; ATTRIBUTES]; 2] {
     match storage {
         Storage::Apart => [
-            ["pulled depths", "pulled places", "pulled normals", "pulled colours", "pulled ids"],
-            ["pushed depths", "pushed places", "pushed normals", "pushed colours", "pushed ids"],
+            ["pulled depths", "pulled displacements", "pulled normals", "pulled colours", "pulled ids"],
+            ["pushed depths", "pushed displacements", "pushed normals", "pushed colours", "pushed ids"],
         ],
         Storage::PingPong => [
-            ["even depths", "even places", "even normals", "even colours", "even ids"],
-            ["odd depths", "odd places", "odd normals", "odd colours", "odd ids"],
+            ["even depths", "even displacements", "even normals", "even colours", "even ids"],
+            ["odd depths", "odd displacements", "odd normals", "odd colours", "odd ids"],
         ],
     }
 }
@@ -109,50 +107,50 @@ impl Pyramid {
     fn new(
         device: &Arc<Device>,
         variant: &Variant,
-        names: [&'static str; PLANES],
+        names: [&'static str; ATTRIBUTES],
         samples: u64,
     ) -> Result<Self> {
-        let mut planes = [const { None }; PLANES];
-        for ((plane, name), format) in planes.iter_mut().zip(names).zip(formats(variant)) {
+        let mut attributes = [const { None }; ATTRIBUTES];
+        for ((attribute, name), format) in attributes.iter_mut().zip(names).zip(formats(variant)) {
             let Some(format) = format else { continue };
             let buffer = Buffer::storage(device, name, samples * pixel_bytes(format))?;
-            *plane = Some(Plane { name, format, buffer });
+            *attribute = Some(AttributeBuffer { name, format, buffer });
         }
-        Ok(Self { planes })
+        Ok(Self { attributes })
     }
 
-    /// What passes see of it.
+    /// Creates its descriptor set.
     fn set(&self, device: &Arc<Device>) -> Result<DescriptorSet> {
-        let planes = BINDINGS.into_iter().zip(&self.planes);
-        let there =
-            planes.filter_map(|(binding, plane)| Some((binding, Binding::whole(&plane.as_ref()?.buffer))));
-        DescriptorSet::new(device, &there.collect::<Vec<_>>())
+        let attributes = BINDINGS.into_iter().zip(&self.attributes);
+        let bindings = attributes
+            .filter_map(|(binding, attribute)| Some((binding, Binding::whole(&attribute.as_ref()?.buffer))));
+        DescriptorSet::new(device, &bindings.collect::<Vec<_>>())
     }
 
-    /// Leaves nothing in any sample.
+    /// Clears all samples.
     pub(crate) fn clear(&self, enc: &mut Encoder<'_, '_>) {
-        let [of_points @ .., ids] = &self.planes;
-        of_points.iter().flatten().for_each(|plane| enc.zero(&plane.buffer));
-        ids.iter().for_each(|plane| enc.ones(&plane.buffer));
+        let [of_points @ .., ids] = &self.attributes;
+        of_points.iter().flatten().for_each(|attribute| enc.zero(&attribute.buffer));
+        ids.iter().for_each(|attribute| enc.ones(&attribute.buffer));
     }
 
-    /// Copies a range of samples to the same place of `other`.
+    /// Copies a range of samples to the same range of `other`.
     pub(crate) fn copy(&self, enc: &mut Encoder<'_, '_>, other: &Self, samples: Range<u64>) {
-        for (from, to) in self.planes.iter().flatten().zip(other.planes.iter().flatten()) {
+        for (from, to) in self.attributes.iter().flatten().zip(other.attributes.iter().flatten()) {
             let bytes = pixel_bytes(from.format);
             let [start, size] = [samples.start, samples.end - samples.start].map(|count| count * bytes);
             enc.copy_range(&from.buffer, &to.buffer, start, size);
         }
     }
 
-    /// Its planes, as a pass uses them.
+    /// Accesses of its attribute buffers.
     pub(crate) fn with(&self, access: Access) -> impl Iterator<Item = Use> {
-        self.planes.iter().flatten().map(move |plane| plane.buffer.with(access))
+        self.attributes.iter().flatten().map(move |attribute| attribute.buffer.with(access))
     }
 }
 
 impl Pyramids {
-    /// The pyramids of `variant`, which is one of pull–push, of a picture of `size` px.
+    /// Creates the pyramids of `variant`, which must be of pull–push, for `size` px.
     pub fn new(device: &Arc<Device>, variant: &Variant, size: [u32; 2]) -> Result<Self> {
         let storage = storage(variant);
         let [first, second] = names(storage).map(|names| Pyramid::new(device, variant, names, samples(size)));
@@ -161,7 +159,7 @@ impl Pyramids {
         Ok(Self { sets: [first?, second?], pyramids, storage, size })
     }
 
-    /// The one that is called so.
+    /// The pyramid of a resource.
     pub(super) fn of(&self, resource: Resource) -> Option<&Pyramid> {
         match resource {
             Resource::Pulled => Some(&self.pyramids[self.storage.pull(0)[1]]),
@@ -170,66 +168,67 @@ impl Pyramids {
         }
     }
 
-    /// The push constants of a step that makes a level.
+    /// Push constants of a step that computes a level.
     pub(super) fn step(&self, level: u32) -> [u32; 2] {
         [level, self.levels()]
     }
 
-    /// The workgroups of such a step.
+    /// Workgroup counts of such a step.
     pub(super) fn grid(&self, level: u32) -> [u32; 3] {
         grid_over(self.level_pixels(level))
     }
 
-    /// Whether pyramids of a picture of this size, with all planes, fit the buffers that shaders of the device can see.
+    /// Whether pyramids of this size with all attributes fit storage buffer ranges.
     pub fn fit(capabilities: &Capabilities, options: &RenderOptions) -> bool {
         let size = options.size;
         let formats = match options.precision {
             Precision::Full => FULL,
             Precision::Half => compact(true),
         };
-        let plane = samples(size) * formats.map(pixel_bytes).into_iter().max().unwrap_or(0);
-        plane <= capabilities.max_storage_buffer_range
+        let attribute = samples(size) * formats.map(pixel_bytes).into_iter().max().unwrap_or(0);
+        attribute <= capabilities.max_storage_buffer_range
     }
 
-    /// The largest picture of about that shape whose pyramids fit; 1×1 if none does.
+    /// Largest size of about that aspect ratio whose pyramids fit; at least 1×1.
     pub fn largest(capabilities: &Capabilities, options: &RenderOptions) -> [u32; 2] {
         let size = options.size;
         let longest = size[0].max(size[1]);
-        let shrunk =
-            |side: u32| size.map(|own| (u64::from(own) * u64::from(side) / u64::from(longest)).max(1) as u32);
-        let (mut fitting, mut beyond) = (1, longest + 1);
-        while beyond - fitting > 1 {
-            let middle = fitting + (beyond - fitting) / 2;
+        let shrunk = |side: u32| {
+            size.map(|length| (u64::from(length) * u64::from(side) / u64::from(longest)).max(1) as u32)
+        };
+        let (mut fitting, mut too_large) = (1, longest + 1);
+        while too_large - fitting > 1 {
+            let middle = fitting + (too_large - fitting) / 2;
             match Self::fit(capabilities, &RenderOptions { size: shrunk(middle), ..*options }) {
                 true => fitting = middle,
-                false => beyond = middle,
+                false => too_large = middle,
             }
         }
         shrunk(fitting)
     }
 
-    /// What the planes take; a level has a quarter of the pixels of the one below.
+    /// Bytes per pixel of the attribute buffers; each level has a quarter of the pixels of the finer one.
     pub fn per_pixel(variant: &Variant) -> PerPixel {
-        let planes = names(storage(variant)).into_iter().flat_map(|names| {
+        let attributes = names(storage(variant)).into_iter().flat_map(|names| {
             let bytes =
                 |(name, format): (_, Option<_>)| Some((name, 4.0 / 3.0 * pixel_bytes(format?) as f64));
             names.into_iter().zip(formats(variant)).filter_map(bytes)
         });
-        planes.collect()
+        attributes.collect()
     }
 
-    /// Whether colours, if they are rounded, share an exponent.
+    /// Whether compact colours share an exponent.
     pub(crate) fn unbounded_colours(&self) -> bool {
-        let of = |plane: &Plane| plane.format == Format::E5B9G9R9_UFLOAT_PACK32;
-        self.pyramids[0].planes[COLOURS].as_ref().is_some_and(of)
+        let of = |attribute: &AttributeBuffer| attribute.format == Format::E5B9G9R9_UFLOAT_PACK32;
+        self.pyramids[0].attributes[COLOURS].as_ref().is_some_and(of)
     }
 
-    /// Number of levels: up to one of a single pixel.
+    /// Number of levels; the last has one pixel.
     pub fn levels(&self) -> u32 {
         levels(self.size)
     }
 
-    /// Width and height of a level, its pixels.
+    /// Width and height of a level, pixels of that level.
     pub fn level_size(&self, level: u32) -> [u32; 2] {
         level_size(self.size, level)
     }
@@ -239,26 +238,30 @@ impl Pyramids {
         level_pixels(self.size, level)
     }
 
-    /// The samples of a level, by number.
+    /// Sample indices of a level.
     pub fn level_range(&self, level: u32) -> Range<u64> {
         let start = (0..level).map(|finer| self.level_pixels(finer)).sum();
         start..start + self.level_pixels(level)
     }
 
-    /// What a pass uses that reads one of the pyramids and writes one.
+    /// Accesses of a pass that reads one pyramid and writes one.
     pub(crate) fn uses(&self, [from, to]: [usize; 2]) -> Vec<Use> {
         let read = (from != to).then(|| self.pyramids[from].with(Access::COMPUTE_READ));
         read.into_iter().flatten().chain(self.pyramids[to].with(Access::COMPUTE_WRITE)).collect()
     }
 
-    /// Every plane that there is.
+    /// All attribute buffers.
     pub fn list(&self) -> impl Iterator<Item = TargetInfo> {
-        let planes = self.pyramids.iter().flat_map(|pyramid| pyramid.planes.iter().flatten());
-        planes.map(|plane| TargetInfo { name: plane.name, format: plane.format, bytes: plane.buffer.size() })
+        let attributes = self.pyramids.iter().flat_map(|pyramid| pyramid.attributes.iter().flatten());
+        attributes.map(|attribute| TargetInfo {
+            name: attribute.name,
+            format: attribute.format,
+            bytes: attribute.buffer.size(),
+        })
     }
 }
 
-/// What passes see of a pyramid.
+/// Resources of a pyramid's descriptor set.
 pub fn shader_resources(variant: &Variant) -> Vec<&'static shaders::Resource> {
     BINDINGS
         .into_iter()

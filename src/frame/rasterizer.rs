@@ -1,4 +1,4 @@
-//! What visits the pixels of a frame, and how wide its sums are: what is asked for, or what is faster, as far as the device can do it.
+//! Rasterizer and float width of the sums: the requested ones, or the faster that the device supports.
 
 use super::pyramids::Pyramids;
 use super::renderer::RenderOptions;
@@ -9,24 +9,25 @@ use crate::settings::{Alpha, Settings};
 use crate::settings::{Precision, Rasterizer};
 use crate::vk::{Device, DeviceDescription};
 
-/// Width of the weighted sums that `rasterizer` keeps on `device`: drawing them blends, which the device may not do in 32 bits.
+/// Float width of the weighted sums of `rasterizer` on `device`: the raster path blends, which the device may not support for 32-bit
+/// floats.
 pub(crate) fn width_of_sums(device: &Device, options: &RenderOptions, rasterizer: Rasterizer) -> Precision {
     let blends = rasterizer == Rasterizer::Compute || device.capabilities().blend_float32;
     if blends { options.precision } else { Precision::Half }
 }
 
-/// [`width_of_sums`] where it is not known yet what is rendered.
+/// [`width_of_sums`] before the rasterizer of a frame is known.
 pub(crate) fn width_of_blended_sums(device: &Device, options: &RenderOptions) -> Precision {
     let rasterizer = rasterizer_for(device, options, Alpha::Mask, Fit::ALL);
     rasterizer.map_or(options.precision, |rasterizer| width_of_sums(device, options, rasterizer))
 }
 
-/// What of a frame by the compute path fits the buffers that shaders of the device can see.
+/// Parts of a frame on the compute path that fit storage buffers of the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Fit {
-    /// The splats of all scenes.
+    /// Splats of all scenes.
     pub splats: bool,
-    /// The targets between passes, if the frame has such.
+    /// Targets between passes, if the frame has any.
     pub targets: bool,
 }
 
@@ -34,14 +35,14 @@ impl Fit {
     /// Everything fits.
     pub const ALL: Self = Self { splats: true, targets: true };
 
-    /// Of a frame of these options, whose stages are passes of their own if it is `crowded`.
-    pub fn new(device: &Device, options: &RenderOptions, splats: bool, crowded: bool) -> Self {
-        let has_targets = options.split || crowded;
+    /// Whether targets between passes fit, which split and `sliced` frames have.
+    pub fn new(device: &Device, options: &RenderOptions, splats: bool, sliced: bool) -> Self {
+        let has_targets = options.split || sliced;
         Self { splats, targets: !has_targets || stage_targets_fit(device.capabilities(), options.size) }
     }
 }
 
-/// The rasterizer of a frame with these settings: the requested one, or the faster one on `device`.
+/// Rasterizer of a frame: the requested one, or the faster one on `device`.
 pub(crate) fn rasterizer_of(
     device: &Device,
     options: &RenderOptions,
@@ -55,9 +56,9 @@ pub(crate) fn rasterizer_of(
     }
 }
 
-/// The faster of what `device` can do with the surfels of `scenes` by pull–push; lines and triangles are computed.
+/// Rasterizer of pull–push's surfels: the faster that `device` supports. Lines and triangles take the compute path.
 ///
-/// Atomic minima are faster wherever they were measured: see the guide, Cost, and Schütz, Kerbl, Wimmer, *Rendering Point Clouds with Compute
+/// Atomic minima are faster on all measured devices: see the guide, Cost, and Schütz, Kerbl, Wimmer, *Rendering Point Clouds with Compute
 /// Shaders and Vertex Order Optimization*, 2021.
 fn rasterizer_of_points(
     device: &Device,
@@ -76,9 +77,9 @@ fn rasterizer_of_points(
             refuse("lines and triangles", "leave them out, or choose another device")
         }
         Some(Rasterizer::Compute) if !capabilities.int64_atomics => {
-            refuse("computed points", "choose the draw rasterizer, or leave it open")
+            refuse("points on the compute path", "choose the draw rasterizer, or none")
         }
-        // Without surfels there is nothing to draw.
+        // Without surfels there are no points to rasterize.
         _ if scenes.iter().all(|placed| placed.scene.capacity() == 0) => Ok(Rasterizer::Compute),
         Some(rasterizer) => Ok(rasterizer),
         None if capabilities.int64_atomics => Ok(Rasterizer::Compute),
@@ -86,14 +87,11 @@ fn rasterizer_of_points(
     }
 }
 
-/// That pyramids do not fit the device, and what would.
+/// Error: the pyramids do not fit the device; names a size that does.
 fn too_large(device: &Device, options: &RenderOptions) -> Error {
     let capabilities = device.capabilities();
     let half = RenderOptions { precision: Precision::Half, ..*options };
-    let halved = match Pyramids::fit(capabilities, &half) {
-        true => "half precision, or ",
-        false => "",
-    };
+    let halved = if Pyramids::fit(capabilities, &half) { "half precision, or " } else { "" };
     let ([width, height], [most_width, most_height]) =
         (options.size, Pyramids::largest(capabilities, options));
     Error::Usage(format!(
@@ -104,7 +102,7 @@ fn too_large(device: &Device, options: &RenderOptions) -> Error {
     ))
 }
 
-/// The faster of what `device` can do with these options.
+/// The faster rasterizer that `device` supports with these options.
 pub(crate) fn rasterizer_for(
     device: &Device,
     options: &RenderOptions,
@@ -128,7 +126,7 @@ pub(crate) fn rasterizer_for(
                     "the splats of all scenes within a buffer that shaders of {name} see: {most} bytes, or {} texels",
                     capabilities.max_texels
                 ),
-                (true, true) => "32-bit sums, and half precision is wanted".into(),
+                (true, true) => "full precision, and half is requested".into(),
             };
             Err(Error::Usage(format!("the compute rasterizer needs {cause}: choose the draw rasterizer")))
         }
@@ -141,7 +139,7 @@ pub(crate) fn rasterizer_for(
             )))
         }
         Some(rasterizer) => Ok(rasterizer),
-        // Measured on CPU devices only; a GPU's own rasterizer is taken until a measurement says otherwise, if it keeps 32 bits.
+        // The compute path is faster on CPU devices. GPUs are not measured: the raster path is the default if it blends 32-bit floats.
         None if can_compute
             && (!can_draw
                 || device.description().kind == DeviceDescription::CPU

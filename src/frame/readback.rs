@@ -1,4 +1,4 @@
-//! The picture of a frame, copied to the CPU.
+//! Readback of a frame's picture.
 
 use super::targets::RenderTargets;
 use crate::error::Result;
@@ -7,13 +7,13 @@ use crate::vk::{Access, Buffer, Device, Recorder};
 use std::sync::Arc;
 
 impl RenderTargets {
-    /// A buffer for each output image.
+    /// Creates readback buffers, one per output image.
     pub fn make_readback(&self, device: &Arc<Device>) -> Result<Vec<Buffer>> {
         let sizes = self.outputs().map(|image| self.pixels() * image.pixel_bytes());
         sizes.map(|size| Buffer::readback(device, "read back", size)).collect()
     }
 
-    /// Records the copies to those buffers.
+    /// Records the copies to `readback`.
     pub fn record_readback(&self, rec: &mut Recorder<'_>, readback: &[Buffer]) {
         let from = self.outputs().map(|image| image.with(Access::COPY_READ));
         let uses = from.chain(readback.iter().map(|buffer| buffer.with(Access::COPY_WRITE)));
@@ -23,10 +23,10 @@ impl RenderTargets {
         rec.wait(&readback.iter().map(|buffer| buffer.with(Access::HOST_READ)).collect::<Vec<_>>());
     }
 
-    /// The picture that the last frame left in those buffers.
+    /// The picture of the last frame, from its readback buffers.
     pub fn picture(&self, readback: &[Buffer]) -> Picture {
         let mut images = readback.iter().map(Buffer::bytes);
-        let mut next = |requested: bool| if requested { images.next() } else { None };
+        let mut next = |present: bool| if present { images.next() } else { None };
         let colour = next(true).map(bytemuck::pod_collect_to_vec).unwrap_or_default();
         let normal = next(self.outputs.normal).map(|bytes| {
             let padded = bytes.chunks_exact(size_of::<[f32; 4]>());

@@ -1,9 +1,9 @@
-//! How the passes of a frame are recorded: barriers, descriptor sets, push constants, numbers of workgroups and vertices.
+//! Records passes: barriers, descriptor sets, push constants, workgroup and vertex counts.
 
-use super::pass::{Commands, Over, Pass, Programs, Steps};
+use super::pass::{Commands, Domain, Pass, Programs, StepContext};
 use super::pyramids::Pyramids;
 use super::resource::Resource;
-use super::scene_resources::{Run, SceneResources};
+use super::scene_resources::{InstanceRun, SceneResources};
 use super::splat_list::SplatList;
 use super::targets::RenderTargets;
 use super::variant::{SceneVariant, Variant};
@@ -15,78 +15,78 @@ use ash::vk::ShaderStageFlags;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Invocations in a workgroup of every shader.
+/// Invocations of a workgroup of all shaders, except of tile passes.
 const WORKGROUP: u64 = 64;
-/// Workgroups among which large triangles of the instances of a dispatch are dealt out.
+/// Workgroups that share the large triangles of a dispatch's instances.
 const LARGE_WORKGROUPS: u32 = 256;
-/// Workgroups in a row of a dispatch over pixels; every device allows as many.
+/// Workgroups per row of a dispatch over pixels; within every device's limits.
 const WORKGROUPS_X: u32 = 32_768;
 
-/// Workgroups for so many invocations, in rows: for shaders that number them by both coordinates.
+/// Workgroups for so many invocations, in rows: for shaders that index by both coordinates.
 pub fn grid_over(invocations: u64) -> [u32; 3] {
     let workgroups = invocations.div_ceil(WORKGROUP) as u32;
     [workgroups.min(WORKGROUPS_X), workgroups.div_ceil(WORKGROUPS_X), 1]
 }
 
-/// Workgroups in one row for so many invocations, for shaders that number them by one coordinate.
+/// Workgroups for so many invocations in one row, for shaders that index by x only.
 fn row_over(invocations: u64) -> [u32; 3] {
     [invocations.div_ceil(WORKGROUP) as u32, 1, 1]
 }
 
-/// What passes are recorded with.
+/// Context in which passes are recorded.
 pub struct Frame<'a> {
-    /// What the frame is.
+    /// Variant of the frame.
     pub variant: &'a Variant,
     /// Descriptor set 0 of passes over pixels.
     pub view: &'a DescriptorSet,
-    /// What passes draw to, and compute.
+    /// Render targets.
     pub targets: &'a RenderTargets,
-    /// The splats of all scenes, for tiles.
+    /// Splats of all scenes, on the tile path.
     pub splats: Option<&'a SplatList>,
-    /// How many of them there are.
+    /// Number of splats, padding included.
     pub splat_count: u64,
     /// See [`super::RenderOptions::most_splats`].
     pub most_splats: Option<u32>,
     /// Number of the frame.
     pub number: u32,
-    /// The instances of scenes for draws: in the order of the frame.
-    pub runs: Vec<Run<'a>>,
-    /// The same for dispatches, whose order does not matter: those of a batch together, as two dispatches must not write what one descriptor set names.
-    pub batches: Vec<Run<'a>>,
+    /// Instances in draw order: that of the frame.
+    pub runs: Vec<InstanceRun<'a>>,
+    /// Instances batch by batch, for dispatches, whose order is free: two dispatches must not write through one descriptor set.
+    pub batches: Vec<InstanceRun<'a>>,
 }
 
-/// A pass with all that its commands need.
-pub struct Prepared {
+/// A pass with its descriptor set, framebuffer and pipelines.
+pub struct PreparedPass {
     pub pass: &'static Pass,
-    /// How its shaders touch what it reads and writes.
+    /// Accesses of its shaders.
     pub accesses: Vec<(Resource, Access)>,
-    /// What it sees of the targets: descriptor set 1, if it has programs.
+    /// Descriptor set 1, if it has programs.
     pub targets: Option<DescriptorSet>,
-    /// What it draws to; in render passes of its own.
+    /// Framebuffer of a raster pass, except in a host's render pass.
     pub framebuffer: Option<Framebuffer>,
-    /// Its pipelines: those of the frame, or of each instance in its order.
+    /// Pipelines of the frame, or of each instance in order.
     pub pipelines: Vec<Pipelines>,
 }
 
-/// The pipelines of a pass for a scene, or for a frame, each with what it runs over.
-pub type Pipelines = Arc<Vec<(Over, Pipeline)>>;
+/// Pipelines of a pass for a frame or a scene, with their domains.
+pub type Pipelines = Arc<Vec<(Domain, Pipeline)>>;
 
-/// A pipeline.
+/// A compute or graphics pipeline.
 pub enum Pipeline {
     Compute(ComputePipeline),
     Draw(DrawPipeline),
 }
 
-impl Prepared {
-    /// Records the pass, unless there is nothing for it to do.
+impl PreparedPass {
+    /// Records the pass, if it has work.
     pub fn record(&self, rec: &mut Recorder<'_>, frame: &Frame<'_>) {
         frame.clear(rec, self.pass.clears);
-        let there = self.pipelines.iter().any(|pipelines| !pipelines.is_empty());
+        let has_pipelines = self.pipelines.iter().any(|pipelines| !pipelines.is_empty());
         match &self.pass.commands {
             Commands::Steps(record) => {
-                record(&Steps { pipeline: self.first(), targets: self.targets.as_ref(), frame }, rec);
+                record(&StepContext { pipeline: self.first(), targets: self.targets.as_ref(), frame }, rec);
             }
-            Commands::Dispatches if there => {
+            Commands::Dispatches if has_pipelines => {
                 for slice in 0..self.slices(frame) {
                     let mut enc = rec.pass(self.pass.name, &frame.uses(&self.accesses));
                     self.dispatch(&mut enc, frame, slice);
@@ -101,17 +101,17 @@ impl Prepared {
         }
     }
 
-    /// How many dispatches over tiles follow each other, each with a slice of the splats; 1 of all other passes.
+    /// Number of dispatches over tiles, each with a slice of the splats; 1 for other passes.
     fn slices(&self, frame: &Frame<'_>) -> u32 {
         let pipelines = self.pipelines.first().map_or(&[][..], |pipelines| pipelines);
-        let over_tiles = pipelines.iter().any(|(over, _)| *over == Over::Tiles);
+        let over_tiles = pipelines.iter().any(|(domain, _)| *domain == Domain::Tiles);
         match frame.splats {
             Some(splats) if over_tiles && frame.variant.sliced => splats.slices(frame.splat_count),
             _ => 1,
         }
     }
 
-    /// Its only pipeline, of a pass of several steps.
+    /// The pipeline of a pass of several steps.
     fn first(&self) -> Option<&ComputePipeline> {
         match self.pipelines.first()?.first()? {
             (_, Pipeline::Compute(pipeline)) => Some(pipeline),
@@ -119,32 +119,34 @@ impl Prepared {
         }
     }
 
-    /// Its pipelines with what they are of: the frame, or each of these runs of instances.
+    /// Its pipelines, each with the run of instances it is recorded for, if any.
     fn each<'a>(
         &'a self,
-        runs: &'a [Run<'_>],
-    ) -> impl Iterator<Item = (Over, &'a Pipeline, Option<&'a Run<'a>>)> {
+        runs: &'a [InstanceRun<'_>],
+    ) -> impl Iterator<Item = (Domain, &'a Pipeline, Option<&'a InstanceRun<'a>>)> {
         let runs: Vec<_> = match self.pass.programs {
-            Programs::OfScene(_) => runs.iter().map(|run| (run.place, Some(run))).collect(),
+            Programs::OfScene(_) => runs.iter().map(|run| (run.index, Some(run))).collect(),
             Programs::OfFrame(_) | Programs::None => vec![(0, None)],
         };
-        let made = |(place, run)| self.pipelines.get(place).map(|pipelines| (pipelines, run));
-        let all = runs.into_iter().filter_map(made);
-        all.flat_map(|(pipelines, run)| pipelines.iter().map(move |(over, made)| (*over, made, run)))
+        let pipelines_of = |(index, run)| self.pipelines.get(index).map(|pipelines| (pipelines, run));
+        let all = runs.into_iter().filter_map(pipelines_of);
+        all.flat_map(|(pipelines, run)| {
+            pipelines.iter().map(move |(domain, pipeline)| (*domain, pipeline, run))
+        })
     }
 
-    /// Records a dispatch of each program; of one over tiles with a slice of the splats.
+    /// Records one dispatch per program; over tiles, of one slice.
     fn dispatch(&self, enc: &mut Encoder<'_, '_>, frame: &Frame<'_>, slice: u32) {
-        for (over, pipeline, run) in self.each(&frame.batches) {
+        for (domain, pipeline, run) in self.each(&frame.batches) {
             let Pipeline::Compute(pipeline) = pipeline else { continue };
             let pyramid = frame.pyramid_of(self.pass);
-            let three = |first, third| -> Vec<&DescriptorSet> {
+            let sets_with = |first, third| -> Vec<&DescriptorSet> {
                 [Some(first), self.targets.as_ref(), third].into_iter().flatten().collect()
             };
             let Some(run) = run else {
-                let sets = three(frame.view, pyramid);
-                match (over, frame.splats) {
-                    (Over::Tiles, Some(splats)) => {
+                let sets = sets_with(frame.view, pyramid);
+                match (domain, frame.splats) {
+                    (Domain::Tiles, Some(splats)) => {
                         let [columns, rows] = frame.targets.tiles();
                         let slices = [slice, self.slices(frame)];
                         let hierarchy = splats.hierarchy(slices, frame.most_steps(), frame.number);
@@ -154,25 +156,27 @@ impl Prepared {
                 }
                 continue;
             };
-            for mut part in run.parts(over.scope(), self.pass) {
-                if over == Over::Slots {
-                    part.instances = part.room;
+            for mut chunk_run in run.chunks(domain.scope(), self.pass) {
+                if domain == Domain::SurfelSlots {
+                    chunk_run.instances = chunk_run.capacity;
                 }
-                let [x, y, _] = match over {
-                    Over::Surfels | Over::Lines | Over::Triangles => row_over(part.chunk.count.into()),
-                    Over::Slots => row_over(part.chunk.instance_stride.into()),
-                    Over::LargeTriangles => [LARGE_WORKGROUPS.div_ceil(part.instances), 1, 1],
+                let [x, y, _] = match domain {
+                    Domain::Surfels | Domain::Lines | Domain::Triangles => {
+                        row_over(chunk_run.chunk.count.into())
+                    }
+                    Domain::SurfelSlots => row_over(chunk_run.chunk.instance_stride.into()),
+                    Domain::LargeTriangles => [LARGE_WORKGROUPS.div_ceil(chunk_run.instances), 1, 1],
                     _ => grid_over(frame.targets.pixels()),
                 };
-                let sets = three(part.set, pyramid.or(part.counts));
-                enc.dispatch(pipeline, &sets, &part.chunk, [x, y, part.instances]);
+                let sets = sets_with(chunk_run.set, pyramid.or(chunk_run.counts));
+                enc.dispatch(pipeline, &sets, &chunk_run.chunk, [x, y, chunk_run.instances]);
             }
         }
     }
 
-    /// Records a draw of each program, inside a render pass; `push` are the push constants of what is drawn over the whole picture.
+    /// Records one draw per program inside a render pass; `push` are the push constants of full-screen draws.
     pub fn draw(&self, draws: &mut Draws<'_>, frame: &Frame<'_>, push: &impl bytemuck::NoUninit) {
-        for (over, pipeline, run) in self.each(&frame.runs) {
+        for (domain, pipeline, run) in self.each(&frame.runs) {
             let Pipeline::Draw(pipeline) = pipeline else { continue };
             let sets =
                 |first| -> Vec<&DescriptorSet> { std::iter::once(first).chain(&self.targets).collect() };
@@ -180,25 +184,25 @@ impl Prepared {
                 draws.draw(pipeline, &sets(frame.view), push, 3);
                 continue;
             };
-            for part in run.parts(over.scope(), self.pass) {
-                let vertices = if over == Over::Points { 1 } else { 3 } * part.chunk.count;
-                draws.draw(pipeline, &sets(part.set), &part.chunk, vertices * part.instances);
+            for chunk_run in run.chunks(domain.scope(), self.pass) {
+                let vertices = if domain == Domain::Points { 1 } else { 3 } * chunk_run.chunk.count;
+                draws.draw(pipeline, &sets(chunk_run.set), &chunk_run.chunk, vertices * chunk_run.instances);
             }
         }
     }
 }
 
 impl<'a> Frame<'a> {
-    /// Steps of a walk over a tile that visits about [`Frame::most_splats`]: two splats a step, and one step for each batch of a team and
-    /// for each group of siblings, of which there is about one a batch.
+    /// Steps of a walk over a tile that visits about [`Frame::most_splats`]: one per two splats, per batch, and per group of boxes, of which
+    /// there is about one a batch.
     fn most_steps(&self) -> u32 {
         let Some(most) = self.most_splats else { return i32::MAX as u32 };
-        let lanes = u64::from(self.variant.team.lanes);
+        let lanes = u64::from(self.variant.workgroup.lanes);
         let steps = u64::from(most).div_ceil(lanes) * (lanes / 2 + 2);
         steps.clamp(1, i32::MAX as u64) as u32
     }
 
-    /// Each buffer and image of these that the frame has, as it is touched.
+    /// The buffers and images of these resources that the frame has, with their accesses.
     pub fn uses(&self, accesses: &[(Resource, Access)]) -> Vec<Use> {
         let mut uses = Vec::new();
         for (resource, access) in accesses {
@@ -214,19 +218,19 @@ impl<'a> Frame<'a> {
         uses
     }
 
-    /// A resource of each scene that has it, once.
+    /// The buffers of a resource, scene by scene.
     fn of_scenes(&self, resource: Resource) -> impl Iterator<Item = &'a Buffer> {
         self.scenes_with(resource).flat_map(move |scene| scene.buffers(resource))
     }
 
-    /// The scenes, each once, that may have a resource: counts may be there and not be wanted.
+    /// The scenes that may have a resource; counts may exist in frames that do not count.
     fn scenes_with(&self, resource: Resource) -> impl Iterator<Item = &'a SceneResources> {
-        let wanted = resource != Resource::Counts || self.variant.count;
-        let first = self.batches.iter().filter(move |run| wanted && run.first == 0);
+        let counted = resource != Resource::Counts || self.variant.count;
+        let first = self.batches.iter().filter(move |run| counted && run.first == 0);
         first.map(|run| run.scene)
     }
 
-    /// Empties these, as far as the frame has them.
+    /// Clears the resources that the frame has.
     pub fn clear(&self, rec: &mut Recorder<'_>, resources: &[Resource]) {
         let write: Vec<_> = resources.iter().map(|resource| (*resource, Access::COPY_WRITE)).collect();
         let uses = self.uses(&write);
@@ -240,7 +244,7 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Descriptor set 2 of a pass that is not of several steps: what it writes of what is pulled, or reads of what is pushed.
+    /// Descriptor set 2 of a pass without steps: the pulled pyramid if it writes that, the pushed one if it reads that.
     fn pyramid_of(&self, pass: &Pass) -> Option<&'a DescriptorSet> {
         let Pyramids { storage, sets, .. } = self.targets.pyramids.as_ref()?;
         if pass.writes.contains(&Resource::Pulled) {
@@ -250,8 +254,8 @@ impl<'a> Frame<'a> {
     }
 }
 
-impl<'a> Steps<'a> {
-    /// The descriptor sets of a step that reads one of the pyramids and writes one.
+impl<'a> StepContext<'a> {
+    /// Descriptor sets of a step that reads one of the pyramids and writes one.
     pub fn pyramid_sets(&self, [from, to]: [usize; 2]) -> Vec<&'a DescriptorSet> {
         let Some(pyramids) = &self.frame.targets.pyramids else { return Vec::new() };
         let pyramids = [to, from].map(|which| &pyramids.sets[which]);
@@ -260,7 +264,7 @@ impl<'a> Steps<'a> {
 }
 
 impl Pass {
-    /// How its shaders touch what it reads and writes in frames of such scenes; with what it draws `to_own` targets.
+    /// Accesses of its shaders in frames of these scenes; with its attachments, if `to_own` targets.
     pub fn accesses(
         &self,
         variant: &Variant,
@@ -271,14 +275,14 @@ impl Pass {
             Programs::None => Vec::new(),
             Programs::OfFrame(programs) => programs(variant),
             Programs::OfScene(programs) => {
-                let unlike: HashSet<_> = scenes.iter().collect();
-                unlike.into_iter().flat_map(programs).collect()
+                let distinct: HashSet<_> = scenes.iter().collect();
+                distinct.into_iter().flat_map(programs).collect()
             }
         };
         let seen_by = |resource: Resource| {
             let modules = programs.iter().flat_map(|program| program.modules());
             let is_seen =
-                |module: &Module| module.resources.iter().any(|(declared, _)| resource.is_seen_as(declared));
+                |module: &Module| module.resources.iter().any(|(declared, _)| resource.is_bound_as(declared));
             modules
                 .filter(|module| is_seen(module))
                 .fold(ShaderStageFlags::empty(), |all, module| all | module.stage)
@@ -302,8 +306,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_numbered_by_one_coordinate_is_in_one_row() {
-        // As many as 65,535 workgroups have.
+    fn one_coordinate_gives_one_row() {
+        // The limit of 65,535 workgroups.
         assert_eq!(row_over(4_194_240), [65_535, 1, 1]);
         let [x, y, _] = grid_over(4_194_240);
         assert!(y > 1 && u64::from(x) * u64::from(y) * WORKGROUP >= 4_194_240);

@@ -1,7 +1,7 @@
-//! Frames: makes what a frame needs when the scene or the settings change, records and submits it, reads it back.
+//! Renderer: creates frame resources, records and submits frames, reads them back.
 
 use super::pyramid_samples::PyramidLevel;
-use super::resources::{FrameResources, Retired};
+use super::resources::{Disposal, FrameResources};
 use super::scene_resources::SceneResources;
 use super::targets::TargetInfo;
 use crate::error::Result;
@@ -16,24 +16,24 @@ pub use crate::vk::shaders::layout::Splat;
 use crate::vk::{Commands, Device, PassTime};
 use std::sync::Arc;
 
-/// What stays the same from frame to frame.
+/// Options that apply to all frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RenderOptions {
     /// Width and height, px.
     pub size: [u32; 2],
-    /// Images beside the picture.
+    /// Outputs in addition to colour.
     pub outputs: Outputs,
-    /// Float width of the weighted sums, or of the samples of pull–push. A device that cannot blend 32-bit floats gets sums of 16, see
+    /// Float width of the weighted sums, or of the samples of pull–push. Devices that cannot blend 32-bit floats use 16 for sums: see
     /// [`Renderer::precision`].
     pub precision: Precision,
-    /// What visits the pixels; `None` takes what is faster on the device.
+    /// Rasterizer; `None` selects the faster on the device.
     pub rasterizer: Option<Rasterizer>,
     /// Time the passes; see also [`Renderer::profile`].
     pub profile: bool,
     /// Count the splats by cull reason.
     pub count: bool,
-    /// Run visibility, attribute and normalize as passes of their own where one dispatch over tiles could be all three: to time them, or to
-    /// see what is between. The picture is the same, bit for bit.
+    /// Run visibility, attribute and normalize as separate passes on the tile path, to time them or to inspect intermediate targets. The
+    /// picture is identical bit by bit.
     pub split: bool,
     /// Bound on the work of a frame on the compute path: about the maximum number of splats that each tile of 8 × 8 px visits in visibility,
     /// and again in coverage and attribute. A tile with more lacks the farthest ones, see [`FrameReport::incomplete`]. `None` visits all. The
@@ -41,7 +41,7 @@ pub struct RenderOptions {
     pub most_splats: Option<u32>,
 }
 
-/// What is known of a rendered frame.
+/// Report of a rendered frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct FrameReport {
@@ -56,37 +56,37 @@ pub struct FrameReport {
 /// Surfels by cull reason in a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SplatCounts {
-    /// Drawn.
+    /// Not culled.
     pub drawn: u32,
     /// The centre is not in front of the eye; by pull–push, not between the near and the far plane.
     pub behind: u32,
     /// The disc reaches the eye plane, or comes within 1/20000 of its distance to it; by pull–push, none.
     pub eye_plane: u32,
-    /// The normal faces away, and such are culled.
+    /// Back faces, if these are culled.
     pub back: u32,
-    /// Off the picture, by pull–push with the centre, or without an area on it: exactly edge-on, or too small to weigh anything.
+    /// Outside the viewport (pull–push: with the centre), or without an area on it: exactly edge-on, or too small to have a weight.
     pub outside: u32,
     /// Not [valid](crate::geometry::Surfels::is_valid), or with an image too large for float32.
     pub invalid: u32,
 }
 
-/// Renders frames of one size on one device. One frame is under way at a time.
+/// Renders frames of one size on one device, one frame at a time.
 pub struct Renderer {
     frame: FrameResources,
     commands: Commands,
 }
 
 impl Renderer {
-    /// A renderer that has made nothing for any scene yet.
+    /// Creates a renderer; resources of scenes are created by the first frame.
     pub fn new(device: &Arc<Device>, options: RenderOptions) -> Result<Self> {
         Ok(Self {
-            frame: FrameResources::new(device, options, Retired::Dropped, None)?,
+            frame: FrameResources::new(device, options, Disposal::Immediate, None)?,
             commands: Commands::new(device, options.profile)?,
         })
     }
 
-    /// Renders a frame of a scene, or of several where they are placed, and waits for it. Makes nothing that an earlier frame of the same
-    /// scenes and kind has made, if no more than one other kind came between.
+    /// Renders a frame of a scene, or of several placed ones, and waits for it. Creates no resources that a previous frame of the same
+    /// scenes and variant created, if at most one other variant was rendered between.
     pub fn render<'a>(
         &mut self,
         scenes: impl Into<Instances<'a, Scene>>,
@@ -106,12 +106,12 @@ impl Renderer {
     ) -> Result<(Picture, FrameReport)> {
         let placed = scenes.into().placed(self.frame.device())?;
         let report = self.submit(&placed, camera, settings, true)?;
-        let present = self.frame.present();
-        let picture = present.map(|present| present.targets.picture(&present.readback));
+        let current = self.frame.current();
+        let picture = current.map(|current| current.targets.picture(&current.readback));
         Ok((picture.unwrap_or_default(), report))
     }
 
-    /// Renders a frame, and once more with its splats in slices if a tile lacked some.
+    /// Renders a frame, and again with its splats in slices if a tile lacked some.
     fn submit(
         &mut self,
         placed: &[Placed<'_>],
@@ -120,9 +120,10 @@ impl Renderer {
         read: bool,
     ) -> Result<FrameReport> {
         let report = self.submit_once(placed, camera, settings, read)?;
-        match report.incomplete && self.frame.most_splats().is_none() {
-            true => self.submit_once(placed, camera, settings, read),
-            false => Ok(report),
+        if report.incomplete && self.frame.most_splats().is_none() {
+            self.submit_once(placed, camera, settings, read)
+        } else {
+            Ok(report)
         }
     }
 
@@ -133,58 +134,63 @@ impl Renderer {
         settings: &Settings,
         read: bool,
     ) -> Result<FrameReport> {
-        let (blocks, _) = self.frame.prepare(placed, camera, settings, read)?;
+        let (uniforms, _) = self.frame.prepare(placed, camera, settings, read)?;
         let mut rec = self.commands.begin()?;
-        self.frame.record(&mut rec, &blocks);
-        if let Some(present) = self.frame.present().filter(|_| read) {
-            present.targets.record_readback(&mut rec, &present.readback);
+        self.frame.record(&mut rec, &uniforms);
+        if let Some(current) = self.frame.current().filter(|_| read) {
+            current.targets.record_readback(&mut rec, &current.readback);
         }
         self.commands.submit()?;
         self.report()
     }
 
-    /// Whether later frames are profiled, if [`RenderOptions::profile`] was asked for: what a whole frame costs is best timed without.
+    /// Enables or disables profiling of later frames, if [`RenderOptions::profile`] is set: the cost of a whole frame is best measured
+    /// without.
     pub fn profile(&mut self, on: bool) {
         self.commands.time(on);
     }
 
-    /// Float width of the samples of the last frame, if it was pull–push's, else of the weighted sums.
+    /// Float width of the last frame's samples (pull–push) or weighted sums.
     pub fn precision(&self) -> Precision {
         self.frame.precision()
     }
 
     /// The targets of the last frame.
     pub fn targets(&self) -> Vec<TargetInfo> {
-        self.frame.present().map_or(Vec::new(), |present| present.targets.list())
+        self.frame.current().map_or(Vec::new(), |current| current.targets.list())
     }
 
-    /// What visits the pixels in the last frame.
+    /// Rasterizer of the last frame.
     pub fn rasterizer(&self) -> Option<Rasterizer> {
-        self.frame.present().map(|present| present.variant.rasterizer)
+        self.frame.current().map(|current| current.variant.rasterizer)
     }
 
-    /// Memory of the splats of the last frame and what belongs to them, bytes.
+    /// Memory of splats, attributes and counters of the last frame, bytes.
     pub fn splat_bytes(&self) -> u64 {
         self.frame.splat_bytes()
     }
 
-    /// Copies the splats of the last frame to the CPU: one a surfel, scene by scene; none if it was pull–push's.
+    /// Reads back the splats of the last frame, one per surfel, scene by scene; empty for pull–push.
     pub fn read_splats(&self) -> Result<Vec<Vec<Splat>>> {
         let read = self.frame.scenes().map(|scene| scene.read(self.frame.device()));
         let of_scenes = read.collect::<Result<Vec<_>>>()?;
-        Ok(self.frame.places().iter().map(|[scene, number]| of_scenes[*scene][*number].clone()).collect())
+        Ok(self
+            .frame
+            .placements()
+            .iter()
+            .map(|[scene, instance]| of_scenes[*scene][*instance].clone())
+            .collect())
     }
 
-    /// Copies the levels of the last frame's pyramids to the CPU, fine to coarse, as they were pulled and as they were pushed; `None` if it was
-    /// not pull–push's.
+    /// Reads back the pyramids of the last frame: pulled and pushed levels, fine to coarse; `None` unless it was of pull–push.
     pub fn read_pyramids(&self) -> Result<Option<[Vec<PyramidLevel>; 2]>> {
-        let pyramids = self.frame.present().and_then(|present| present.targets.pyramids.as_ref());
+        let pyramids = self.frame.current().and_then(|current| current.targets.pyramids.as_ref());
         pyramids.map(|pyramids| pyramids.read(self.frame.device())).transpose()
     }
 
-    /// What the frame that is over tells.
+    /// Report of the completed frame.
     fn report(&mut self) -> Result<FrameReport> {
-        let counted = self.frame.present().is_some_and(|present| present.variant.count);
+        let counted = self.frame.current().is_some_and(|current| current.variant.count);
         Ok(FrameReport {
             pass_times: self.commands.pass_times()?,
             counts: counted.then(|| SplatCounts::of(self.frame.scenes())),
@@ -194,14 +200,14 @@ impl Renderer {
 }
 
 impl SplatCounts {
-    /// Of so many surfels, of which these are culled.
+    /// Counts of so many surfels, of which these are culled.
     pub(crate) fn new(surfels: u64, Counts { culled }: Counts) -> Self {
         let [behind, eye_plane, back, outside, invalid] = culled;
         let drawn = surfels.saturating_sub(culled.iter().copied().map(u64::from).sum()) as u32;
         Self { drawn, behind, eye_plane, back, outside, invalid }
     }
 
-    /// Those of all scenes together.
+    /// Sum over scenes.
     fn of<'a>(scenes: impl Iterator<Item = &'a SceneResources> + Clone) -> Self {
         let add =
             |sum: [u32; 5], counts: Counts| std::array::from_fn(|i| sum[i].saturating_add(counts.culled[i]));

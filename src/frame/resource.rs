@@ -1,49 +1,49 @@
-//! What passes read and write.
+//! Resources that passes read and write.
 
-/// Buffers and images that passes hand on to each other. What is only read, such as positions, is none.
+/// Buffers and images that passes hand to later passes. Inputs that no pass writes, such as positions, are not among them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Resource {
-    /// A splat a surfel: of a scene, or of all scenes of a frame one after the other, where they are for tiles.
+    /// One splat per surfel: of a scene, or on the tile path of all scenes of a frame.
     Splats,
-    /// For tiles: the pixels of each splat, and of the nodes of the hierarchy above them.
+    /// Tile path: bounding boxes of splats, and of the hierarchy's nodes above them.
     Boxes,
-    /// For tiles: what the sums take of each splat.
+    /// Tile path: attributes that sums read of each splat.
     Attributes,
-    /// Clip lines on the screen, of a scene or a frame as splats are.
+    /// Projected clip lines, of a scene or a frame as splats are.
     ScreenClips,
-    /// Of a scene: culled surfels by reason.
+    /// Per scene: culled surfels by reason.
     Counts,
-    /// Of a scene: indices of triangles of many pixels.
+    /// Per scene: indices of large triangles.
     LargeTriangles,
-    /// Depth key of the nearest surface, moved back by ε; 0 where there is none.
+    /// Depth key of the nearest surface, moved back by ε; 0 in empty pixels.
     Visibility,
-    /// `(Σw, Σw a)`: `a` is the normal where normals are wanted, else the colour.
+    /// `(Σw, Σw a)`: `a` is the normal if the frame needs normals, else the colour.
     Sums0,
-    /// `(Σw κ, Σw rgb)`, where depth is wanted, or colour beside normals.
+    /// `(Σw κ, Σw rgb)`, if the frame needs depth, or colours and normals.
     Sums1,
-    /// The samples of each pixel that a surface covers, a bit each, where α is coverage.
+    /// Mask of each pixel's covered samples, if α is coverage.
     Coverage,
-    /// Distance and number of the nearest point of each pixel.
+    /// Distance and id of the nearest point of each pixel.
     Nearest,
-    /// A depth that tells the distance of the nearest point that is drawn, bit for bit.
+    /// Depth of the nearest rasterized point, a bijection of its distance.
     NearestDepth,
-    /// Its number, from 1 on; 0 where there is none.
-    NearestNumber,
-    /// The pyramid with the level 0 that fetch writes.
+    /// Its id + 1; 0 in empty pixels.
+    NearestId,
+    /// Pyramid whose level 0 fetch writes.
     Pulled,
-    /// The pyramid with the level 0 that shade reads.
+    /// Pyramid whose level 0 shade reads.
     Pushed,
     /// Linear colour and α, or the quantity that is shaded.
     Image,
     /// Unit normals, if requested.
     Normal,
-    /// Eye-space depth, if requested.
+    /// Eye-space depths, if requested.
     Depth,
     /// Ids of the visible points, if requested.
     Id,
-    /// The number of the last frame that lacks splats of a tile; see `crowding`.
+    /// Number of the last frame of which a tile lacks splats; see `slicing`.
     IncompleteFrame,
-    /// The depth of a host's surfaces.
+    /// Depth attachment of a host.
     HostDepth,
 }
 
@@ -63,7 +63,7 @@ impl Resource {
             Self::Coverage => "coverage",
             Self::Nearest => "nearest",
             Self::NearestDepth => "nearest_depth",
-            Self::NearestNumber => "nearest_number",
+            Self::NearestId => "nearest_id",
             Self::Pulled => "pulled",
             Self::Pushed => "pushed",
             Self::Image => "image",
@@ -75,7 +75,7 @@ impl Resource {
         }
     }
 
-    /// Whether each scene has one of its own, or its part of one.
+    /// Whether scenes have their own, or a range of the frame's.
     pub fn is_of_scene(self) -> bool {
         matches!(
             self,

@@ -1,17 +1,17 @@
-//! What frames are made with: pipelines, targets and what is made of scenes, made when scene or settings change, and recorded in every frame.
+//! Frame resources: pipelines, targets and scene resources, created when scene or settings change and reused by frames.
 
-use super::crowding::Crowding;
+use super::slicing::Slicing;
 use super::description::{Description, describe};
 use super::pass::{Commands, Pass, Programs};
 use super::pipelines::{Host, Pipelines};
 use super::rasterizer::width_of_blended_sums;
-use super::recording::{Frame, Prepared};
+use super::recording::{Frame, PreparedPass};
 use super::renderer::RenderOptions;
 use super::scene_cache::SceneCache;
-use super::scene_resources::{Needs, Run, SceneResources, batches_of};
-use super::splat_list::{Room, Share, SplatList, room_for, room_of};
+use super::scene_resources::{InstanceRun, Needs, SceneResources, batches_of};
+use super::splat_list::{ListExtent, ListRange, SplatList, extent_of, padded_instances};
 use super::targets::{HostBindings, RenderTargets, check_size};
-use super::uniforms::{self, Blocks};
+use super::uniforms::{self, Uniforms};
 use super::variant::{SceneVariant, Variant};
 use crate::error::Result;
 use crate::geometry::Camera;
@@ -25,160 +25,160 @@ use crate::vk::{Access, Binding, Buffer, DescriptorSet, Device, Framebuffer, Rec
 use std::any::Any;
 use std::sync::Arc;
 
-/// Pipelines, targets and what is made of scenes, for frames of one size on one device.
+/// Frame resources for frames of one size on one device.
 pub struct FrameResources {
-    // Fields are dropped in this order: views before what they view.
-    present: Option<Present>,
-    /// What was before it: who switches to and fro, as in progressive rendering, makes nothing.
-    previous: Option<Present>,
+    // Fields drop in this order: views before their buffers.
+    current: Option<VariantResources>,
+    /// Resources of the previous variant: alternating between two, as progressive rendering does, creates nothing.
+    previous: Option<VariantResources>,
     scenes: SceneCache,
-    /// Of each place of the present frame: its scene in the cache, and which of that one's places it is.
-    places: Vec<[usize; 2]>,
-    /// The splats of the present frame, for tiles.
+    /// Per instance of the frame: index of its scene in the cache, and its index among that scene's instances.
+    placements: Vec<[usize; 2]>,
+    /// Splats of the frame, on the tile path.
     splats: Option<Arc<SplatList>>,
-    /// How many of them there are.
+    /// Number of splats, padding included.
     splat_count: u64,
-    crowding: Crowding,
+    slicing: Slicing,
     pipelines: Pipelines,
     view: Arc<Buffer>,
     options: RenderOptions,
     device: Arc<Device>,
-    retired: Retired,
-    /// Number of targets made so far.
-    made: u64,
+    disposal: Disposal,
+    /// Number of objects created so far: source of ids.
+    created: u64,
 }
 
-/// What becomes of resources that frames no longer use.
-pub enum Retired {
-    /// They are destroyed at once: every frame is waited for.
-    Dropped,
-    /// They are listed for deferred destruction.
-    Kept(Vec<Deferred>),
+/// Disposal of unused resources.
+pub enum Disposal {
+    /// Destroy at once: every frame is waited for.
+    Immediate,
+    /// Collect for deferred destruction.
+    Deferred(Vec<Deferred>),
 }
 
-/// A resource that no later frame uses, kept until the GPU is done with it.
+/// An unused resource, kept until the GPU has finished with it.
 pub type Deferred = Box<dyn Any + Send + Sync>;
 
-/// Targets of a variant, and its passes.
-pub struct Present {
-    /// No other has it.
+/// Targets and passes of a variant.
+pub struct VariantResources {
+    /// Unique id.
     pub id: u64,
     pub variant: Variant,
-    /// Of the scenes for which the passes have pipelines.
+    /// Variants of the scenes that the passes have pipelines for.
     scenes: Vec<SceneVariant>,
-    /// The list of splats that the passes see.
+    /// Id of the splat list in the passes' descriptor sets.
     splats: u64,
-    passes: Vec<Prepared>,
+    passes: Vec<PreparedPass>,
     view: ViewSet,
     pub targets: RenderTargets,
     pub readback: Vec<Buffer>,
-    /// What the view's set names.
+    /// Keeps the buffer in the view's set alive.
     _view: Arc<Buffer>,
 }
 
 /// Descriptor set 0 of passes over pixels.
 struct ViewSet {
     set: DescriptorSet,
-    /// The scene whose texture or materials it names.
+    /// The scene whose texture or materials it binds.
     scene: Option<u64>,
 }
 
-impl Retired {
-    fn take<T: Any + Send + Sync>(&mut self, deferred: Option<T>) {
-        if let (Self::Kept(list), Some(deferred)) = (self, deferred) {
+impl Disposal {
+    fn add<T: Any + Send + Sync>(&mut self, deferred: Option<T>) {
+        if let (Self::Deferred(list), Some(deferred)) = (self, deferred) {
             list.push(Box::new(deferred));
         }
     }
 }
 
 impl FrameResources {
-    /// Nothing is made for any scene yet. With a `host`, what is drawn is drawn in its subpasses.
+    /// Creates frame resources without scenes. With a `host`, raster passes are drawn in its subpasses.
     pub fn new(
         device: &Arc<Device>,
         options: RenderOptions,
-        retired: Retired,
+        disposal: Disposal,
         host: Option<Host>,
     ) -> Result<Self> {
         check_size(device, options.size)?;
         Ok(Self {
-            present: None,
+            current: None,
             previous: None,
             scenes: SceneCache::default(),
-            places: Vec::new(),
+            placements: Vec::new(),
             splats: None,
             splat_count: 0,
-            crowding: Crowding::new(device)?,
+            slicing: Slicing::new(device)?,
             pipelines: Pipelines::new(host),
             view: Arc::new(Buffer::uniform(device, "frame", uniforms::BYTES)?),
             options,
             device: device.clone(),
-            retired,
-            made: 0,
+            disposal,
+            created: 0,
         })
     }
 
-    /// Width of the samples of the last frame, if it was pull–push's, else of the weighted sums.
+    /// Float width of the last frame's samples (pull–push) or weighted sums.
     pub fn precision(&self) -> Precision {
         let unknown = || width_of_blended_sums(&self.device, &self.options);
-        self.present.as_ref().map_or_else(unknown, |present| present.variant.precision)
+        self.current.as_ref().map_or_else(unknown, |current| current.variant.precision)
     }
 
-    /// What they are made on.
+    /// The device.
     pub fn device(&self) -> &Arc<Device> {
         &self.device
     }
 
-    /// Targets of the last frame.
-    pub fn present(&self) -> Option<&Present> {
-        self.present.as_ref()
+    /// Resources of the last frame's variant.
+    pub fn current(&self) -> Option<&VariantResources> {
+        self.current.as_ref()
     }
 
-    /// What is made of the scenes of the last frame, each once.
+    /// Resources of the last frame's scenes, each once.
     pub fn scenes(&self) -> impl Iterator<Item = &SceneResources> + Clone {
-        self.scenes.present()
+        self.scenes.current()
     }
 
-    /// Memory of the splats of the last frame and what belongs to them, bytes.
+    /// Memory of splats, attributes and counters of the last frame, bytes.
     pub fn splat_bytes(&self) -> u64 {
-        let tiled = self.present.as_ref().is_some_and(|present| present.variant.is_tiled());
+        let tiled = self.current.as_ref().is_some_and(|current| current.variant.is_tiled());
         let of_frame = self.splats.as_ref().filter(|_| tiled).map_or(0, |splats| splats.bytes());
         of_frame + self.scenes().map(SceneResources::bytes).sum::<u64>()
     }
 
-    /// The places of the last frame, in their order: the number of the scene and which of its places it is.
-    pub fn places(&self) -> &[[usize; 2]] {
-        &self.places
+    /// The instances of the last frame in order: index of the scene, and index among its instances.
+    pub fn placements(&self) -> &[[usize; 2]] {
+        &self.placements
     }
 
-    /// The resources that frames no longer use since the last call.
+    /// Takes the resources that became unused since the last call.
     pub fn take_deferred(&mut self) -> Vec<Deferred> {
-        match &mut self.retired {
-            Retired::Dropped => Vec::new(),
-            Retired::Kept(list) => std::mem::take(list),
+        match &mut self.disposal {
+            Disposal::Immediate => Vec::new(),
+            Disposal::Deferred(list) => std::mem::take(list),
         }
     }
 
-    /// Frames from now on have this size, px.
+    /// Sets the size of the next frames, px.
     pub fn resize(&mut self, size: [u32; 2]) {
         if self.options.size != size {
             self.options.size = size;
-            self.forget_targets();
+            self.discard_targets();
         }
     }
 
-    /// The next frame has targets of its own, as where a host draws to others.
-    pub fn forget_targets(&mut self) {
-        for old in [self.present.take(), self.previous.take()] {
-            self.retired.take(old);
+    /// Discards the targets, such as when a host changes its own.
+    pub fn discard_targets(&mut self) {
+        for old in [self.current.take(), self.previous.take()] {
+            self.disposal.add(old);
         }
     }
 
-    /// Whether frames from now on count their surfels.
+    /// Enables or disables counting.
     pub fn count(&mut self, on: bool) {
         self.options.count = on;
     }
 
-    /// What a frame of these scenes is. Refuses what cannot be rendered.
+    /// Describes a frame; rejects unsupported frames.
     pub fn describe(
         &self,
         scenes: &[Placed<'_>],
@@ -187,8 +187,8 @@ impl FrameResources {
         size: [u32; 2],
     ) -> Result<Description> {
         // Where the work of a tile is bounded there are no slices.
-        let crowded = self.most_splats().is_none() && self.crowding.is_crowded(scenes, camera, size);
-        describe(&self.device, &RenderOptions { size, ..self.options }, scenes, camera, settings, crowded)
+        let sliced = self.most_splats().is_none() && self.slicing.needs_slices(scenes, camera, size);
+        describe(&self.device, &RenderOptions { size, ..self.options }, scenes, camera, settings, sliced)
     }
 
     /// See [`RenderOptions::most_splats`].
@@ -198,30 +198,30 @@ impl FrameResources {
 
     /// Whether a frame that is over lacked splats since the last call.
     pub fn learn(&mut self) -> bool {
-        self.crowding.learn()
+        self.slicing.learn()
     }
 
-    /// Makes what a frame needs and is not there, with buffers to read it back where it is `read`: the frame's numbers, and what it is.
+    /// Creates missing resources of a frame, with readback buffers if `read`; returns uniforms and variant.
     pub fn prepare(
         &mut self,
         scenes: &[Placed<'_>],
         camera: &Camera,
         settings: &Settings,
         read: bool,
-    ) -> Result<(Blocks, Variant)> {
+    ) -> Result<(Uniforms, Variant)> {
         let frame = self.describe(scenes, camera, settings, self.options.size)?;
         self.make(scenes, &frame, self.options.size, &[])?;
-        self.crowding.begin(scenes, camera, self.options.size);
-        match &mut self.present {
-            Some(present) if read && present.readback.is_empty() => {
-                present.readback = present.targets.make_readback(&self.device)?;
+        self.slicing.begin(scenes, camera, self.options.size);
+        match &mut self.current {
+            Some(current) if read && current.readback.is_empty() => {
+                current.readback = current.targets.make_readback(&self.device)?;
             }
             _ => {}
         }
-        Ok((frame.blocks, frame.variant))
+        Ok((frame.uniforms, frame.variant))
     }
 
-    /// Makes what a frame needs and is not there; in a host's subpasses with targets of `size` px, of which shaders see `bindings`.
+    /// Creates missing resources of a frame; in a host's subpasses with targets of `size` px and the host's `bindings`.
     pub fn make(
         &mut self,
         scenes: &[Placed<'_>],
@@ -230,62 +230,62 @@ impl FrameResources {
         bindings: HostBindings<'_>,
     ) -> Result<()> {
         self.make_scenes(scenes, frame)?;
-        self.make_present(scenes, frame.variant, size)?;
+        self.make_current(scenes, frame.variant, size)?;
         self.make_passes(&frame.scenes, bindings)
     }
 
-    /// Makes the pipelines of such a frame, and nothing else.
+    /// Creates the pipelines of a frame, and no other resources.
     pub fn make_pipelines(&mut self, frame: &Description) -> Result<()> {
         for pass in self.pipelines.passes(&frame.variant, frame.scenes.len()) {
-            self.pipelines.of(&self.device, pass, &frame.variant, &frame.scenes)?;
+            self.pipelines.for_pass(&self.device, pass, &frame.variant, &frame.scenes)?;
         }
         Ok(())
     }
 
-    /// Records the frame that was prepared, with these numbers, but for what is drawn in subpasses of a host: for that everything is made ready.
-    pub fn record(&self, rec: &mut Recorder<'_>, blocks: &Blocks) {
-        self.update(rec, blocks);
-        let Some((present, frame)) = self.frame() else { return };
+    /// Records the prepared frame with these uniforms. Passes in a host's subpasses are not recorded, but their inputs are synchronized.
+    pub fn record(&self, rec: &mut Recorder<'_>, uniforms: &Uniforms) {
+        self.update(rec, uniforms);
+        let Some((current, frame)) = self.frame() else { return };
         let mut awaited = Vec::new();
-        for prepared in &present.passes {
-            if self.pipelines.is_of_host(prepared.pass) {
+        for prepared in &current.passes {
+            if self.pipelines.is_host_pass(prepared.pass) {
                 frame.clear(rec, prepared.pass.clears);
                 awaited.extend(frame.uses(&prepared.accesses));
             } else {
                 prepared.record(rec, &frame);
             }
         }
-        if present.variant.count {
+        if current.variant.count {
             let counts = self.scenes().flat_map(|scene| scene.buffers(super::resource::Resource::Counts));
             awaited.extend(counts.map(|counts| counts.with(Access::HOST_READ)));
         }
-        if present.variant.is_tiled() {
-            awaited.push(self.crowding.buffer().with(Access::HOST_READ));
+        if current.variant.is_tiled() {
+            awaited.push(self.slicing.buffer().with(Access::HOST_READ));
         }
         if !awaited.is_empty() {
             rec.wait(&awaited);
         }
     }
 
-    /// The frame that was prepared, to be recorded.
-    pub fn frame(&self) -> Option<(&Present, Frame<'_>)> {
-        let present = self.present.as_ref()?;
+    /// Context to record the prepared frame.
+    pub fn frame(&self) -> Option<(&VariantResources, Frame<'_>)> {
+        let current = self.current.as_ref()?;
         let scenes: Vec<_> = self.scenes().collect();
-        let one = |place: usize| {
-            let [scene, number] = self.places[place];
-            Run { scene: scenes[scene], place, first: number as u64, count: 1 }
+        let one = |index: usize| {
+            let [scene, instance] = self.placements[index];
+            InstanceRun { scene: scenes[scene], index, first: instance as u64, count: 1 }
         };
-        let (mut runs, mut batches): (Vec<Run<'_>>, Vec<Run<'_>>) = Default::default();
-        for run in (0..self.places.len()).map(one) {
+        let (mut runs, mut batches): (Vec<InstanceRun<'_>>, Vec<InstanceRun<'_>>) = Default::default();
+        for run in (0..self.placements.len()).map(one) {
             match runs.last_mut() {
-                Some(last) if last.takes(&run) => last.count += 1,
+                Some(last) if last.continues_with(&run) => last.count += 1,
                 _ => runs.push(run),
             }
             if run.first == 0 {
                 batches.extend(run.batches());
             }
         }
-        let Present { variant, targets, view, .. } = present;
+        let VariantResources { variant, targets, view, .. } = current;
         let splats = self.splats.as_deref().filter(|_| variant.is_tiled());
         let frame = Frame {
             variant,
@@ -294,134 +294,144 @@ impl FrameResources {
             splats,
             splat_count: self.splat_count,
             most_splats: self.most_splats(),
-            number: self.crowding.frame(),
+            number: self.slicing.frame(),
             runs,
             batches,
         };
-        Some((present, frame))
+        Some((current, frame))
     }
 
-    /// Records the writing of a frame's numbers.
-    fn update(&self, rec: &mut Recorder<'_>, blocks: &Blocks) {
+    /// Records the update of the uniform buffers.
+    fn update(&self, rec: &mut Recorder<'_>, uniforms: &Uniforms) {
         let of_scenes: Vec<_> = self.scenes().collect();
-        let mut own: Vec<Vec<u8>> = vec![Vec::new(); of_scenes.len()];
-        for ([scene, number], block) in self.places.iter().zip(&blocks.instances) {
+        let mut bytes_of_scenes: Vec<Vec<u8>> = vec![Vec::new(); of_scenes.len()];
+        for ([scene, instance], block) in self.placements.iter().zip(&uniforms.instances) {
             let (start, bytes) =
-                (of_scenes[*scene].view_start(*number as u64) as usize, bytemuck::bytes_of(block));
-            own[*scene].resize(start + bytes.len(), 0);
-            own[*scene][start..].copy_from_slice(bytes);
+                (of_scenes[*scene].view_start(*instance as u64) as usize, bytemuck::bytes_of(block));
+            bytes_of_scenes[*scene].resize(start + bytes.len(), 0);
+            bytes_of_scenes[*scene][start..].copy_from_slice(bytes);
         }
-        let bytes = blocks.bytes();
+        let bytes = uniforms.bytes();
         let view = (&*self.view, &*bytes);
-        let frames =
-            self.scenes().zip(&own).filter_map(|(scene, bytes)| Some((scene.views.as_ref()?, &**bytes)));
+        let frames = self
+            .scenes()
+            .zip(&bytes_of_scenes)
+            .filter_map(|(scene, bytes)| Some((scene.views.as_ref()?, &**bytes)));
         rec.update(&std::iter::once(view).chain(frames).collect::<Vec<_>>());
     }
 
-    /// Makes what is not there of these scenes, for as many surfels as each has now.
+    /// Creates missing resources of these scenes, and sets their surfel counts.
     fn make_scenes(&mut self, placed: &[Placed<'_>], frame: &Description) -> Result<()> {
-        let instanced = !frame.blocks.instances.is_empty();
+        let instanced = !frame.uniforms.instances.is_empty();
         let variant = &frame.variant;
         let mut list: Vec<&Scene> = Vec::new();
         let mut first_of: Vec<usize> = Vec::new();
         let mut counts: Vec<u64> = Vec::new();
-        self.places.clear();
+        self.placements.clear();
         let mut known = std::collections::HashMap::new();
         for (i, Placed { scene, .. }) in placed.iter().enumerate() {
-            let number = *known.entry(scene.id).or_insert(list.len());
-            if number == list.len() {
+            let index = *known.entry(scene.id).or_insert(list.len());
+            if index == list.len() {
                 list.push(scene);
                 first_of.push(i);
                 counts.push(0);
             }
-            self.places.push([number, counts[number] as usize]);
-            counts[number] += 1;
+            self.placements.push([index, counts[index] as usize]);
+            counts[index] += 1;
         }
         let splats = variant.pull_push.is_none() && !variant.is_tiled();
         let of_host = self.pipelines.has_host();
-        let shares = self.make_splats(&list, &counts, variant)?;
+        let starts = self.make_splats(&list, &counts, variant)?;
         let needs = |scene: usize| Needs {
             splats,
             moved: of_host && splats && variant.visibility == Visibility::Axis,
             instanced,
-            instances: room_for(counts[scene]),
+            instances: padded_instances(counts[scene]),
         };
-        let Self { scenes, retired, device, view, splats: splat_list, .. } = self;
+        let Self { scenes, disposal, device, view, splats: splat_list, .. } = self;
         let splat_list = splat_list.as_ref();
-        let fits = |made: &SceneResources, scene: usize| {
-            made.needs().cover(&needs(scene))
+        let fits = |resources: &SceneResources, scene: usize| {
+            resources.needs().satisfies(&needs(scene))
                 && match splat_list {
                     Some(splats) if variant.is_tiled() => {
-                        made.needs() == &needs(scene)
-                            && made.share().is_some_and(|share| share.is(splats, shares[scene]))
+                        resources.needs() == &needs(scene)
+                            && resources.range().is_some_and(|range| range.is_range_of(splats, starts[scene]))
                     }
-                    _ => made.share().is_none(),
+                    _ => resources.range().is_none(),
                 }
         };
         let make = |scene: usize| {
             let variant = &frame.scenes[first_of[scene]];
-            let share = splat_list.filter(|_| variant.frame.is_tiled());
-            let share = share.map(|splats| Share::new(splats, list[scene], shares[scene]));
-            SceneResources::new(device, list[scene], variant, needs(scene), view, share)
+            let range = splat_list.filter(|_| variant.frame.is_tiled());
+            let range = range.map(|splats| ListRange::new(splats, list[scene], starts[scene]));
+            SceneResources::new(device, list[scene], variant, needs(scene), view, range)
         };
-        let updated = scenes.update(&list, fits, make, |gone| retired.take(Some(gone)));
+        let updated = scenes.update(&list, fits, make, |evicted| disposal.add(Some(evicted)));
         if updated.is_err() {
-            self.places.clear();
+            self.placements.clear();
         }
         updated?;
-        for ((made, scene), instances) in scenes.present_mut().zip(list).zip(counts) {
-            made.show(scene.count(), instances);
+        for ((resources, scene), instances) in scenes.current_mut().zip(list).zip(counts) {
+            resources.set_counts(scene.count(), instances);
             if variant.count {
-                made.make_counts(device)?;
+                resources.make_counts(device)?;
             }
         }
         Ok(())
     }
 
-    /// Makes the list of the splats of these scenes, each once, of which there are so many instances: where the share of each begins.
-    fn make_splats(&mut self, scenes: &[&Scene], instances: &[u64], variant: &Variant) -> Result<Vec<Room>> {
-        let mut room = Room::default();
-        let mut shares = Vec::new();
+    /// Creates the splat list of these distinct scenes with so many instances each; returns the start of each scene's range.
+    fn make_splats(
+        &mut self,
+        scenes: &[&Scene],
+        instances: &[u64],
+        variant: &Variant,
+    ) -> Result<Vec<ListExtent>> {
+        let mut extent = ListExtent::default();
+        let mut starts = Vec::new();
         if !variant.is_tiled() {
-            return Ok(shares);
+            return Ok(starts);
         }
         for (scene, instances) in scenes.iter().zip(instances) {
-            shares.push(room);
-            room = room.with(room_of(scene, &batches_of(&self.device, scene, room_for(*instances))));
+            starts.push(extent);
+            extent =
+                extent.with(extent_of(scene, &batches_of(&self.device, scene, padded_instances(*instances))));
         }
-        self.splat_count = room.splats;
-        if !self.splats.as_ref().is_some_and(|splats| splats.fits(variant, room)) {
-            self.made += 1;
-            let made =
-                SplatList::new(variant, room, self.made, self.splats.as_deref(), self.crowding.buffer())?;
-            self.retired.take(self.splats.replace(Arc::new(made)));
+        self.splat_count = extent.splats;
+        if !self.splats.as_ref().is_some_and(|splats| splats.fits(variant, extent)) {
+            self.created += 1;
+            let (old, incomplete) = (self.splats.as_deref(), self.slicing.buffer());
+            let splats = SplatList::new(variant, extent, self.created, old, incomplete)?;
+            self.disposal.add(self.splats.replace(Arc::new(splats)));
         }
-        Ok(shares)
+        Ok(starts)
     }
 
-    fn make_present(&mut self, scenes: &[Placed<'_>], variant: Variant, size: [u32; 2]) -> Result<()> {
-        let is_other = |present: &Option<Present>| present.as_ref().is_none_or(|p| p.variant != variant);
-        if is_other(&self.present) {
-            std::mem::swap(&mut self.present, &mut self.previous);
+    fn make_current(&mut self, scenes: &[Placed<'_>], variant: Variant, size: [u32; 2]) -> Result<()> {
+        let is_other =
+            |current: &Option<VariantResources>| current.as_ref().is_none_or(|p| p.variant != variant);
+        if is_other(&self.current) {
+            std::mem::swap(&mut self.current, &mut self.previous);
         }
         let with_lookups = scenes.iter().find(|placed| {
             variant.texture.is_some() && placed.scene.texture.is_some()
                 || variant.materials && placed.scene.materials.is_some()
         });
         let with_lookups = with_lookups.map(|placed| placed.scene);
-        if is_other(&self.present) {
-            self.retired.take(self.present.take());
+        if is_other(&self.current) {
+            self.disposal.add(self.current.take());
             if variant.precision != self.options.precision {
                 let name = &self.device.description().name;
                 log::warn!("{name} cannot blend 32-bit floats: sums are kept in 16 bits");
             }
-            let targets = match self.pipelines.has_host() {
-                true => RenderTargets::of_host(&self.device, &variant, size)?,
-                false => RenderTargets::new(&self.device, &variant, size)?,
+            let targets = if self.pipelines.has_host() {
+                RenderTargets::of_host(&self.device, &variant, size)?
+            } else {
+                RenderTargets::new(&self.device, &variant, size)?
             };
-            self.made += 1;
-            self.present = Some(Present {
-                id: self.made,
+            self.created += 1;
+            self.current = Some(VariantResources {
+                id: self.created,
                 variant,
                 scenes: Vec::new(),
                 splats: 0,
@@ -432,79 +442,81 @@ impl FrameResources {
                 _view: self.view.clone(),
             });
         }
-        match &mut self.present {
-            Some(present) if present.view.scene != with_lookups.map(|scene| scene.id) => {
+        match &mut self.current {
+            Some(current) if current.view.scene != with_lookups.map(|scene| scene.id) => {
                 let view = ViewSet::new(&self.device, &self.view, &variant, with_lookups)?;
-                self.retired.take(Some(std::mem::replace(&mut present.view, view).set));
+                self.disposal.add(Some(std::mem::replace(&mut current.view, view).set));
             }
             _ => {}
         }
         Ok(())
     }
 
-    /// Makes the pipelines of the present passes for such scenes, if they are others than before.
+    /// Creates pipelines and descriptor sets of the current passes, if scenes or splat list changed.
     fn make_passes(&mut self, scenes: &[SceneVariant], of_host: HostBindings<'_>) -> Result<()> {
-        let Self { present: Some(present), pipelines, device, splats, .. } = self else { return Ok(()) };
-        let splats = splats.as_ref().filter(|_| present.variant.is_tiled());
+        let Self { current: Some(current), pipelines, device, splats, .. } = self else { return Ok(()) };
+        let splats = splats.as_ref().filter(|_| current.variant.is_tiled());
         let splats_id = splats.map_or(0, |splats| splats.id);
-        let of_splats = present.splats == splats_id;
-        if !present.passes.is_empty() && present.scenes == scenes && of_splats {
+        let of_splats = current.splats == splats_id;
+        if !current.passes.is_empty() && current.scenes == scenes && of_splats {
             return Ok(());
         }
-        let beside: Vec<_> = match splats {
-            Some(splats) => of_host.iter().copied().chain(splats.bindings(&present.variant)).collect(),
+        let all_bindings: Vec<_> = match splats {
+            Some(splats) => of_host.iter().copied().chain(splats.bindings(&current.variant)).collect(),
             None => of_host.to_vec(),
         };
-        let list = pipelines.passes(&present.variant, scenes.len());
+        let list = pipelines.passes(&current.variant, scenes.len());
         let same = of_splats
-            && list.len() == present.passes.len()
-            && list.iter().zip(&present.passes).all(|(pass, prepared)| std::ptr::eq(*pass, prepared.pass));
-        // All is made before any of it is exchanged: after an error the passes are those of the scenes before.
-        let fresh =
-            list.iter().filter(|_| !same).map(|pass| prepared(device, pass, pipelines, present, &beside));
-        let fresh = fresh.collect::<Result<Vec<_>>>()?;
-        let made = list.iter().map(|pass| pipelines.of(device, pass, &present.variant, scenes));
-        let made = made.collect::<Result<Vec<_>>>()?;
+            && list.len() == current.passes.len()
+            && list.iter().zip(&current.passes).all(|(pass, prepared)| std::ptr::eq(*pass, prepared.pass));
+        // Exchanged only after all are created: after an error the previous passes remain valid.
+        let created_passes = list
+            .iter()
+            .filter(|_| !same)
+            .map(|pass| prepared(device, pass, pipelines, current, &all_bindings));
+        let created_passes = created_passes.collect::<Result<Vec<_>>>()?;
+        let created = list.iter().map(|pass| pipelines.for_pass(device, pass, &current.variant, scenes));
+        let created = created.collect::<Result<Vec<_>>>()?;
         if !same {
-            self.retired.take(Some(std::mem::replace(&mut present.passes, fresh)));
+            self.disposal.add(Some(std::mem::replace(&mut current.passes, created_passes)));
         }
-        for (prepared, made) in present.passes.iter_mut().zip(made) {
+        for (prepared, pipelines) in current.passes.iter_mut().zip(created) {
             let to_own = prepared.framebuffer.is_some();
-            prepared.accesses = prepared.pass.accesses(&present.variant, scenes, to_own);
-            prepared.pipelines = made;
+            prepared.accesses = prepared.pass.accesses(&current.variant, scenes, to_own);
+            prepared.pipelines = pipelines;
         }
-        present.scenes = scenes.to_vec();
-        present.splats = splats_id;
+        current.scenes = scenes.to_vec();
+        current.splats = splats_id;
         Ok(())
     }
 }
 
-impl Present {
-    /// A pass of the frame.
-    pub fn pass(&self, pass: &'static Pass) -> Option<&Prepared> {
+impl VariantResources {
+    /// A pass of this variant.
+    pub fn pass(&self, pass: &'static Pass) -> Option<&PreparedPass> {
         self.passes.iter().find(|prepared| std::ptr::eq(prepared.pass, pass))
     }
 }
 
-/// A pass without its pipelines.
+/// Creates a pass without its pipelines.
 fn prepared(
     device: &Arc<Device>,
     pass: &'static Pass,
     pipelines: &mut Pipelines,
-    present: &Present,
+    current: &VariantResources,
     of_host: HostBindings<'_>,
-) -> Result<Prepared> {
-    let framebuffer = match (pipelines.render_pass(device, pass, &present.variant)?, &pass.commands) {
+) -> Result<PreparedPass> {
+    let framebuffer = match (pipelines.render_pass(device, pass, &current.variant)?, &pass.commands) {
         (Some(into), Commands::Draws(targets)) => {
-            Some(Framebuffer::new(device, &into, &targets.images(&present.targets))?)
+            Some(Framebuffer::new(device, &into, &targets.images(&current.targets))?)
         }
         _ => None,
     };
     let targets = match pass.programs {
         Programs::None => None,
-        Programs::OfFrame(_) | Programs::OfScene(_) => Some(present.targets.set(device, pass, of_host)?),
+        Programs::OfFrame(_) | Programs::OfScene(_) => Some(current.targets.set(device, pass, of_host)?),
     };
-    Ok(Prepared { pass, accesses: Vec::new(), targets, framebuffer, pipelines: Vec::new() })
+    Ok(PreparedPass { pass, accesses: Vec::new(), targets, framebuffer, pipelines: Vec::new() })
 }
 
 impl ViewSet {

@@ -1,10 +1,10 @@
-//! What frames make of a scene, for all its instances: splats, lists and counts, and descriptor sets of all that its passes see.
+//! Scene resources: splats, lists, counts and descriptor sets of a scene and all its instances.
 
 use super::pass::{Pass, Scope};
 use super::passes::{footprint, visibility};
 use super::resource::Resource;
 use super::splat_buffers::{ALIGNMENT, Batches, LIST_HEADER, SPLAT, SplatBuffers};
-use super::splat_list::{Share, slots};
+use super::splat_list::{ListRange, slots};
 use super::uniforms::{self, VIEW};
 use super::variant::SceneVariant;
 use crate::error::Result;
@@ -15,88 +15,88 @@ use crate::vk::{Binding, Buffer, Commands, DescriptorSet, Device, Encoder, Recor
 use std::ops::Range;
 use std::sync::Arc;
 
-/// What frames make of a scene.
+/// Resources of a scene.
 pub struct SceneResources {
-    // Sets go before what they name.
+    // Drop order: sets before the resources in them.
     sets: Sets,
-    /// Of the counts of each part, where they are counted: descriptor set 2 of what counts.
+    /// Descriptor set 2 of passes that count, one per chunk.
     count_sets: Vec<DescriptorSet>,
     splats: Option<SplatBuffers>,
-    /// Its share of the splats of the frame, for tiles.
-    share: Option<Share>,
-    /// Those of discs moved away by ε, where they are wanted beside.
+    /// Its range of the frame's splat list, on the tile path.
+    range: Option<ListRange>,
+    /// Splats of discs moved by ε, if both kinds are needed at once.
     moved: Option<SplatBuffers>,
-    /// Culled surfels by reason, of each part.
+    /// Culled surfels by reason, per chunk.
     counts: Option<Buffer>,
-    /// Numbers of triangles of many pixels, a list an instance.
+    /// Lists of large triangles, one per instance.
     large_triangles: Option<Buffer>,
-    /// The camera as each instance has it, where there are instances.
+    /// Views of the instances, if scenes are instanced.
     pub views: Option<Buffer>,
-    parts: Vec<Range<u64>>,
-    /// Clips of each part.
+    chunks: Vec<Range<u64>>,
+    /// Clips per chunk.
     clips: Vec<u32>,
-    /// Lines and triangles: how many, and the number of the first.
+    /// Lines and triangles: their count and first id.
     elements: [Option<[u32; 2]>; 2],
     needs: Needs,
     batches: Batches,
-    /// Surfels of the present frame.
+    /// Surfels of the frame.
     count: u64,
-    /// Instances of the present frame.
+    /// Instances of the frame.
     instances: u64,
 }
 
-/// What a frame needs of a scene beside its variant.
+/// Requirements of a frame on a scene's resources, besides the variant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Needs {
-    /// Splats are made for draws.
+    /// The scene has its own splat buffers (raster path).
     pub splats: bool,
-    /// Splats of moved discs are kept beside the others.
+    /// Splats of moved discs are stored separately.
     pub moved: bool,
-    /// Each instance has the camera in its own axes.
+    /// Each instance has its own view.
     pub instanced: bool,
-    /// How many instances there are.
+    /// Number of instances.
     pub instances: u64,
 }
 
-/// Descriptor sets 0 of a scene's passes.
+/// Descriptor sets 0 of the passes of a scene.
 #[derive(Default)]
 struct Sets {
-    /// Batch by batch, part by part.
+    /// Batch by batch, chunk by chunk.
     surfels: Vec<DescriptorSet>,
-    /// The same of moved discs.
+    /// Sets of moved discs, likewise.
     moved: Vec<DescriptorSet>,
     /// Of lines and of triangles, batch by batch.
     elements: [Vec<DescriptorSet>; 2],
 }
 
-/// Instances of a scene that follow each other in a frame, in one batch.
+/// Consecutive instances of a scene in a frame, within one batch.
 #[derive(Clone, Copy)]
-pub struct Run<'a> {
+pub struct InstanceRun<'a> {
     /// The scene.
     pub scene: &'a SceneResources,
-    /// Number of the first instance in the frame.
-    pub place: usize,
-    /// Its number among those of the scene.
+    /// Index of the first instance in the frame.
+    pub index: usize,
+    /// Index of the first instance among those of the scene.
     pub first: u64,
-    /// How many they are.
+    /// Number of instances.
     pub count: u64,
 }
 
-/// What one descriptor set names, of each instance of a run: a part of a scene's surfels, its lines or its triangles.
-pub struct Part<'a> {
+/// A chunk of a scene's surfels, its lines or its triangles in a run of instances: one descriptor set.
+pub struct ChunkRun<'a> {
     pub set: &'a DescriptorSet,
-    /// Of its counts, if they are there.
+    /// Set of its counts, if they exist.
     pub counts: Option<&'a DescriptorSet>,
     /// The push constants of `lib/instance.glsl`.
     pub chunk: Chunk,
     pub instances: u32,
-    /// Instances that there is room for in the batch.
-    pub room: u32,
+    /// Instance capacity of the batch.
+    pub capacity: u32,
 }
 
 impl Needs {
-    /// Whether what was made for these does for `others`, too.
-    pub fn cover(&self, others: &Self) -> bool {
+    /// Whether resources created for these requirements satisfy `others`.
+    pub fn satisfies(&self, others: &Self) -> bool {
         let same = |needs: &Self| (needs.splats, needs.moved, needs.instanced);
         let enough = others.instances..=4 * others.instances;
         same(self) == same(others) && enough.contains(&self.instances)
@@ -104,23 +104,23 @@ impl Needs {
 }
 
 impl SceneResources {
-    /// Buffers and descriptor sets for a scene in frames of `variant`, which must outlive them, as must the `view`'s numbers.
+    /// Creates buffers and descriptor sets of a scene in frames of `variant`. The scene and `view` must outlive them.
     pub fn new(
         device: &Arc<Device>,
         scene: &Scene,
         variant: &SceneVariant,
         needs: Needs,
         view: &Buffer,
-        share: Option<Share>,
+        range: Option<ListRange>,
     ) -> Result<Self> {
         let kinds = scene.primitives.as_ref();
         let of = |elements: &Elements| [elements.count, elements.first];
         let triangles = kinds.and_then(|kinds| kinds.triangles.as_ref()).map(of);
         let listed = triangles.map_or(0, |[count, _]| u64::from(count));
         let batches = batches_of(device, scene, needs.instances);
-        let splats = |wanted: bool| {
-            let wanted = wanted && needs.splats;
-            wanted.then(|| SplatBuffers::new(device, scene, batches)).transpose()
+        let splats = |needed: bool| {
+            let needed = needed && needs.splats;
+            needed.then(|| SplatBuffers::new(device, scene, batches)).transpose()
         };
         let list = |_| {
             let bytes = batches.count() * batches.stride(LIST_HEADER, 4 * listed);
@@ -128,16 +128,16 @@ impl SceneResources {
         };
         let views = || Buffer::uniform(device, "views", batches.count() * batches.stride(0, VIEW));
         let clips = scene.clip_chunks().unwrap_or_default();
-        let mut made = Self {
+        let mut resources = Self {
             sets: Sets::default(),
             count_sets: Vec::new(),
             splats: splats(true)?,
-            share,
+            range,
             moved: splats(needs.moved)?,
             counts: None,
             large_triangles: triangles.map(list).transpose()?,
             views: needs.instanced.then(views).transpose()?,
-            parts: scene.chunks().to_vec(),
+            chunks: scene.chunks().to_vec(),
             clips: clips.iter().map(|clips| clips.count as u32).collect(),
             elements: [kinds.and_then(|kinds| kinds.lines.as_ref()).map(of), triangles],
             needs,
@@ -145,37 +145,37 @@ impl SceneResources {
             count: 0,
             instances: 0,
         };
-        made.sets = made.make_sets(device, scene, variant, view)?;
-        Ok(made)
+        resources.sets = resources.make_sets(device, scene, variant, view)?;
+        Ok(resources)
     }
 
-    /// What it was made for.
+    /// Requirements that it was created for.
     pub fn needs(&self) -> &Needs {
         &self.needs
     }
 
-    /// Its share of the splats of the frame, for tiles.
-    pub fn share(&self) -> Option<&Share> {
-        self.share.as_ref()
+    /// Its range of the frame's splat list, on the tile path.
+    pub fn range(&self) -> Option<&ListRange> {
+        self.range.as_ref()
     }
 
-    /// Frames from now on are of the first `count` surfels of so many instances.
-    pub fn show(&mut self, count: u64, instances: u64) {
+    /// Sets the surfel and instance counts of the next frames.
+    pub fn set_counts(&mut self, count: u64, instances: u64) {
         (self.count, self.instances) = (count, instances);
     }
 
-    /// Frames from now on may count: makes what they count in, if it is not there.
+    /// Creates the counters, if missing.
     pub fn make_counts(&mut self, device: &Arc<Device>) -> Result<()> {
         if self.counts.is_some() {
             return Ok(());
         }
-        let parts = self.parts.len() as u64;
-        let counts = Buffer::readback(device, "counts", (parts * ALIGNMENT).max(ALIGNMENT))?;
-        let set = |part: u64| {
-            let binding = Binding::Storage(&counts, part * ALIGNMENT, ALIGNMENT);
+        let chunks = self.chunks.len() as u64;
+        let counts = Buffer::readback(device, "counts", (chunks * ALIGNMENT).max(ALIGNMENT))?;
+        let set = |chunk: u64| {
+            let binding = Binding::Storage(&counts, chunk * ALIGNMENT, ALIGNMENT);
             DescriptorSet::new(device, &[(&resource::COUNTS, binding)])
         };
-        self.count_sets = (0..parts).map(set).collect::<Result<_>>()?;
+        self.count_sets = (0..chunks).map(set).collect::<Result<_>>()?;
         self.counts = Some(counts);
         Ok(())
     }
@@ -188,7 +188,7 @@ impl SceneResources {
         view: &Buffer,
     ) -> Result<Sets> {
         let batches = &self.batches;
-        let blocks = |batch: u64| {
+        let uniform_bindings = |batch: u64| {
             let [frame, view] = uniforms::bindings(view);
             let of_batch = |views| {
                 let (start, bytes) = (batch * batches.stride(0, VIEW), batches.len(batch) * VIEW);
@@ -197,32 +197,32 @@ impl SceneResources {
             [frame, self.views.as_ref().map_or(view, of_batch)]
         };
         let of_surfels = variant.resources(Scope::Surfels);
-        let surfels = |buffers: Option<&SplatBuffers>, batch: u64, number: usize| {
-            let mut there = scene.bindings(number);
-            there.extend(blocks(batch));
-            there.extend(buffers.into_iter().flat_map(|splats| splats.bindings(scene, batch, number)));
-            let share = self.share.as_ref().filter(|_| buffers.is_none());
-            there.extend(share.into_iter().flat_map(|share| share.bindings(scene, batches, batch, number)));
-            wanted_set(device, &of_surfels, there)
+        let surfels = |buffers: Option<&SplatBuffers>, batch: u64, index: usize| {
+            let mut bindings = scene.bindings(index);
+            bindings.extend(uniform_bindings(batch));
+            bindings.extend(buffers.into_iter().flat_map(|splats| splats.bindings(scene, batch, index)));
+            let range = self.range.as_ref().filter(|_| buffers.is_none());
+            bindings.extend(range.into_iter().flat_map(|range| range.bindings(scene, batches, batch, index)));
+            bound_set(device, &of_surfels, bindings)
         };
         let every = |buffers: Option<&SplatBuffers>| {
-            let parts =
-                (0..batches.count()).flat_map(|batch| (0..self.parts.len()).map(move |part| (batch, part)));
-            parts.map(|(batch, part)| surfels(buffers, batch, part)).collect::<Result<Vec<_>>>()
+            let chunks = (0..batches.count())
+                .flat_map(|batch| (0..self.chunks.len()).map(move |chunk| (batch, chunk)));
+            chunks.map(|(batch, chunk)| surfels(buffers, batch, chunk)).collect::<Result<Vec<_>>>()
         };
         let elements = |kind: usize| {
-            let wanted = variant.resources([Scope::Lines, Scope::Triangles][kind]);
+            let declared = variant.resources([Scope::Lines, Scope::Triangles][kind]);
             let set = |batch: u64| {
-                let mut there = scene.element_bindings(kind);
-                there.extend(blocks(batch));
-                there.extend(self.large_triangles.as_ref().map(|lists| {
+                let mut bindings = scene.element_bindings(kind);
+                bindings.extend(uniform_bindings(batch));
+                bindings.extend(self.large_triangles.as_ref().map(|lists| {
                     let bytes = LIST_HEADER + batches.len(batch) * 4 * self.triangles();
                     (
                         &resource::LARGE_TRIANGLES,
                         Binding::Storage(lists, batch * self.triangle_stride(), bytes),
                     )
                 }));
-                wanted_set(device, &wanted, there)
+                bound_set(device, &declared, bindings)
             };
             let count = if self.elements[kind].is_some() { batches.count() } else { 0 };
             (0..count).map(set).collect::<Result<Vec<_>>>()
@@ -250,9 +250,9 @@ impl SceneResources {
         of_splats.chain(other)
     }
 
-    /// Empties lists, or counts, of the present instances.
+    /// Clears the lists, or counters, of the instances in use.
     pub fn clear(&self, enc: &mut Encoder<'_, '_>, resource: Resource) {
-        let batches = self.present_batches();
+        let batches = self.used_batches();
         match resource {
             Resource::LargeTriangles => {
                 let Some(lists) = &self.large_triangles else { return };
@@ -263,7 +263,7 @@ impl SceneResources {
         }
     }
 
-    /// How many triangles there are.
+    /// Number of triangles.
     fn triangles(&self) -> u64 {
         self.elements[1].map_or(0, |[count, _]| u64::from(count))
     }
@@ -273,48 +273,48 @@ impl SceneResources {
         self.batches.stride(LIST_HEADER, 4 * self.triangles())
     }
 
-    /// Where the camera of an instance is in `views`, bytes.
+    /// Offset of an instance's view in `views`, bytes.
     pub fn view_start(&self, instance: u64) -> u64 {
-        let [batch, number] = self.batches.of(instance);
-        batch * self.batches.stride(0, VIEW) + number * VIEW
+        let [batch, index] = self.batches.of(instance);
+        batch * self.batches.stride(0, VIEW) + index * VIEW
     }
 
-    /// The batches that instances of the present frame are in.
-    fn present_batches(&self) -> Range<u64> {
+    /// Batches that the frame's instances use.
+    fn used_batches(&self) -> Range<u64> {
         let last = self.instances.checked_sub(1).map(|last| self.batches.of(last)[0]);
         0..last.map_or(0, |last| last + 1)
     }
 
-    /// Surfels of the present frame, in all instances.
+    /// Surfels of the frame, in all instances.
     pub fn count(&self) -> u64 {
         self.count * self.instances
     }
 
-    /// Culled surfels of the last counted frame, by reason; it must be over.
+    /// Culled surfels of the last counted frame, by reason. The frame must have completed.
     pub fn counts(&self) -> Counts {
         self.counts.as_ref().map_or(Counts { culled: [0; 5] }, |counts| counts_in(counts.bytes()))
     }
 
-    /// Memory of splats and what belongs to them, bytes.
+    /// Memory of splats and counters, bytes.
     pub fn bytes(&self) -> u64 {
         let splats = [&self.splats, &self.moved].into_iter().flatten().map(SplatBuffers::bytes);
         splats.sum::<u64>() + self.counts.as_ref().map_or(0, Buffer::size)
     }
 
-    /// Copies the splats of the last frame, one a surfel, to the CPU, instance by instance.
+    /// Reads back the splats of the last frame, one per surfel, instance by instance.
     pub fn read(&self, device: &Arc<Device>) -> Result<Vec<Vec<Splat>>> {
-        let (size, capacity) = (self.count * SPLAT, self.parts.last().map_or(0, |part| part.end));
-        let of_draws = self.splats.as_ref().map(|made| &made.splats);
-        let of_frame = self.share.as_ref().and_then(|share| share.list.buffer(Resource::Splats));
-        let Some(made) = of_draws.or(of_frame).filter(|_| size > 0) else {
+        let (size, capacity) = (self.count * SPLAT, self.chunks.last().map_or(0, |chunk| chunk.end));
+        let of_draws = self.splats.as_ref().map(|buffers| &buffers.splats);
+        let of_frame = self.range.as_ref().and_then(|range| range.list.buffer(Resource::Splats));
+        let Some(splats) = of_draws.or(of_frame).filter(|_| size > 0) else {
             return Ok(vec![Vec::new(); self.instances as usize]);
         };
-        let target = Buffer::readback(device, "read splats", made.size())?;
-        Commands::new(device, false)?.run(|rec| copy_to_host(rec, made, &target))?;
+        let target = Buffer::readback(device, "read splats", splats.size())?;
+        Commands::new(device, false)?.run(|rec| copy_to_host(rec, splats, &target))?;
         let of_instance = |instance: u64| {
-            let start = match (&self.splats, &self.share) {
-                (Some(made), _) => made.splats_start(instance, capacity),
-                (None, Some(share)) => SPLAT * share.first_splat(capacity, &self.batches, instance),
+            let start = match (&self.splats, &self.range) {
+                (Some(buffers), _) => buffers.splats_start(instance, capacity),
+                (None, Some(range)) => SPLAT * range.first_splat(capacity, &self.batches, instance),
                 (None, None) => 0,
             } as usize;
             bytemuck::pod_collect_to_vec(&target.bytes()[start..start + size as usize])
@@ -322,13 +322,13 @@ impl SceneResources {
         Ok((0..self.instances).map(of_instance).collect())
     }
 
-    /// Bytes of the counts; 0 where nothing is counted.
+    /// Bytes of the counters; 0 if nothing is counted.
     pub fn counts_size(&self) -> u64 {
         self.counts.as_ref().map_or(0, Buffer::size)
     }
 }
 
-/// The batches of so many instances of a scene.
+/// Batches of so many instances of a scene.
 pub fn batches_of(device: &Device, scene: &Scene, instances: u64) -> Batches {
     let triangles = scene.primitives.as_ref().and_then(|kinds| kinds.triangles.as_ref());
     let listed = triangles.map_or(0, |triangles| u64::from(triangles.count));
@@ -337,14 +337,14 @@ pub fn batches_of(device: &Device, scene: &Scene, instances: u64) -> Batches {
     Batches::new(instances, scene.chunks().len(), bytes, range)
 }
 
-/// A descriptor set of what is wanted of what is there.
-fn wanted_set(
+/// Creates a descriptor set of those bindings that the layout declares.
+fn bound_set(
     device: &Arc<Device>,
-    wanted: &[&'static shaders::Resource],
-    mut there: Vec<(&'static shaders::Resource, Binding<'_>)>,
+    declared: &[&'static shaders::Resource],
+    mut bindings: Vec<(&'static shaders::Resource, Binding<'_>)>,
 ) -> Result<DescriptorSet> {
-    there.retain(|(resource, _)| wanted.contains(resource));
-    DescriptorSet::new(device, &there)
+    bindings.retain(|(resource, _)| declared.contains(resource));
+    DescriptorSet::new(device, &bindings)
 }
 
 fn copy_to_host(rec: &mut Recorder<'_>, from: &Buffer, to: &Buffer) {
@@ -354,72 +354,72 @@ fn copy_to_host(rec: &mut Recorder<'_>, from: &Buffer, to: &Buffer) {
     rec.wait(&[to.with(Access::HOST_READ)]);
 }
 
-/// Culled surfels by reason, of the counts of all parts.
+/// Sums the counters of all chunks.
 pub fn counts_in(bytes: &[u8]) -> Counts {
-    let parts = bytes.chunks_exact(ALIGNMENT as usize);
+    let chunks = bytes.chunks_exact(ALIGNMENT as usize);
     let culled =
-        parts.map(|part| bytemuck::pod_read_unaligned::<Counts>(&part[..size_of::<Counts>()]).culled);
+        chunks.map(|chunk| bytemuck::pod_read_unaligned::<Counts>(&chunk[..size_of::<Counts>()]).culled);
     let add = |sum: [u32; 5], counts: [u32; 5]| std::array::from_fn(|i| sum[i].saturating_add(counts[i]));
     Counts { culled: culled.fold([0; 5], add) }
 }
 
-impl<'a> Run<'a> {
-    /// Whether another begins where this ends, in the same batch.
-    pub fn takes(&self, other: &Self) -> bool {
+impl<'a> InstanceRun<'a> {
+    /// Whether `other` continues this run in the same batch.
+    pub fn continues_with(&self, other: &Self) -> bool {
         std::ptr::eq(self.scene, other.scene)
             && other.first == self.first + self.count
             && self.scene.batches.of(other.first)[0] == self.scene.batches.of(self.first)[0]
     }
 
-    /// All instances of its scene, batch by batch.
+    /// All instances of the scene, batch by batch.
     pub fn batches(self) -> impl Iterator<Item = Self> {
-        let batches = self.scene.present_batches().map(move |batch| self.scene.batches.range(batch));
+        let batches = self.scene.used_batches().map(move |batch| self.scene.batches.range(batch));
         let present = batches.map(move |range| range.start..range.end.min(self.scene.instances));
         present.map(move |range| Self { first: range.start, count: range.end - range.start, ..self })
     }
 
-    /// What a pass sees of this, descriptor set by descriptor set.
-    pub fn parts(&self, scope: Scope, pass: &Pass) -> Vec<Part<'a>> {
+    /// The chunks of the run that a pass is recorded for.
+    pub fn chunks(&self, scope: Scope, pass: &Pass) -> Vec<ChunkRun<'a>> {
         match scope {
             Scope::Surfels => self.surfels(pass).collect(),
             Scope::Lines | Scope::Triangles | Scope::View => self.elements(scope).into_iter().collect(),
         }
     }
 
-    fn surfels(&self, pass: &Pass) -> impl Iterator<Item = Part<'a>> {
+    fn surfels(&self, pass: &Pass) -> impl Iterator<Item = ChunkRun<'a>> {
         let present = (self.first + self.count
             - self.scene.batches.range(self.scene.batches.of(self.first)[0]).start)
             as u32;
         let (scene, [batch, instance]) = (self.scene, self.scene.batches.of(self.first));
-        let moved = [&raw const footprint::MOVED, &raw const visibility::DRAWN].contains(&&raw const *pass);
+        let moved = [&raw const footprint::MOVED, &raw const visibility::RASTER].contains(&&raw const *pass);
         let sets = if moved && scene.moved.is_some() { &scene.sets.moved } else { &scene.sets.surfels };
-        let parts = scene.parts.len();
-        let sets = &sets[parts * batch as usize..parts * (batch as usize + 1)];
+        let chunks = scene.chunks.len();
+        let sets = &sets[chunks * batch as usize..chunks * (batch as usize + 1)];
         let instances = self.count as u32;
-        sets.iter().zip(&scene.parts).enumerate().map(move |(number, (set, part))| {
-            let own = part.end - part.start;
-            let room = scene.share.as_ref().map_or(own, |_| slots(own));
+        sets.iter().zip(&scene.chunks).enumerate().map(move |(index, (set, range))| {
+            let surfels = range.end - range.start;
+            let slots = scene.range.as_ref().map_or(surfels, |_| slots(surfels));
             let chunk = Chunk {
-                count: scene.count.saturating_sub(part.start).min(own) as u32,
-                first_id: part.start as u32,
-                capacity: own as u32,
-                instance_stride: room as u32,
-                clip_stride: scene.clips.get(number).copied().unwrap_or_default(),
+                count: scene.count.saturating_sub(range.start).min(surfels) as u32,
+                first_id: range.start as u32,
+                capacity: surfels as u32,
+                instance_stride: slots as u32,
+                clip_stride: scene.clips.get(index).copied().unwrap_or_default(),
                 first_instance: instance as u32,
                 first_clip: scene
-                    .share
+                    .range
                     .as_ref()
-                    .map_or(0, |share| share.first_clip(&scene.batches, batch, number))
+                    .map_or(0, |range| range.first_clip(&scene.batches, batch, index))
                     as u32,
-                attribute_rows: scene.share.as_ref().map_or(0, |share| share.list.rows()) as u32,
+                attribute_rows: scene.range.as_ref().map_or(0, |range| range.list.rows()) as u32,
                 instance_count: present,
             };
-            let room = scene.batches.len(batch) as u32;
-            Part { set, counts: scene.count_sets.get(number), chunk, instances, room }
+            let capacity = scene.batches.len(batch) as u32;
+            ChunkRun { set, counts: scene.count_sets.get(index), chunk, instances, capacity }
         })
     }
 
-    fn elements(&self, scope: Scope) -> Option<Part<'a>> {
+    fn elements(&self, scope: Scope) -> Option<ChunkRun<'a>> {
         let kind = match scope {
             Scope::Lines => 0,
             Scope::Triangles => 1,
@@ -441,6 +441,6 @@ impl<'a> Run<'a> {
             instance_count: 0,
         };
         let instances = self.count as u32;
-        Some(Part { set, counts: None, chunk, instances, room: instances })
+        Some(ChunkRun { set, counts: None, chunk, instances, capacity: instances })
     }
 }

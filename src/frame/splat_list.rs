@@ -1,9 +1,9 @@
-//! The splats of all scenes of a frame, for passes over tiles, with the hierarchy of boxes above them.
+//! Splat list: the splats of all scenes of a frame on the tile path, and the hierarchy of boxes above them.
 
 use super::resource::Resource;
 use super::scene_resources::batches_of;
 use super::splat_buffers::{ALIGNMENT, Batches, SPLAT};
-use super::variant::{Team, Variant};
+use super::variant::{TileWorkgroup, Variant};
 use crate::error::Result;
 use crate::scene::Scene;
 use crate::scene::instance::Placed;
@@ -15,25 +15,25 @@ use std::sync::Arc;
 
 /// Children of a node of the hierarchy: FAN_OUT of `lib/box.glsl`.
 const FAN_OUT: u64 = 8;
-/// The level whose nodes a walk visits near to far; there is always one.
+/// Level whose nodes a walk visits near to far; always present.
 const BLOCKS: u32 = 3;
-/// The level whose nodes are slices, of 32,768 splats: what a walk over a tile visits at most in a dispatch.
+/// Level whose nodes are slices of 32,768 splats: the most that a walk over a tile visits in a dispatch.
 const SLICES: u32 = 5;
 /// Bytes of a box.
 pub const BOX: u64 = 16;
 /// Bytes of a row of attributes.
 pub const ATTRIBUTE_ROW: u64 = 16;
-/// How many times as long as it need be a list may be before it is made anew: frames of coarser and finer scenes come in turns.
-const MOST_SPARE: u64 = 32;
-/// Splats that a range of the list is a multiple of, so that every range of every buffer is aligned.
+/// Largest ratio of a list's capacity to the required one before it is reallocated: coarse and fine scenes alternate.
+const MOST_EXCESS: u64 = 32;
+/// Splat alignment of ranges of the list, so that ranges of all its buffers are aligned.
 pub const RANGE: u64 = ALIGNMENT / BOX;
 
-/// Clips on the screen that a range of the list is a multiple of.
+/// Screen clip alignment of ranges of the list.
 const CLIP_RANGE: u64 = ALIGNMENT / size_of::<ScreenClip>() as u64;
 
 /// Splats of a frame, scene by scene.
 pub struct SplatList {
-    // Views go before what they view.
+    // Drop order: views before their buffers.
     texels: Option<Texels>,
     splats: Buffer,
     boxes: Buffer,
@@ -42,13 +42,13 @@ pub struct SplatList {
     /// The number of the last frame that lacks splats.
     incomplete: Arc<Buffer>,
     rows: u64,
-    room: Room,
+    extent: ListExtent,
     levels: Vec<BoxLevel>,
-    /// No other list of the renderer has it.
+    /// Unique id among the lists of a renderer.
     pub id: u64,
 }
 
-/// What shaders fetch of a list.
+/// Texel buffer views of a list.
 struct Texels {
     splats: TexelView,
     boxes: TexelView,
@@ -56,17 +56,17 @@ struct Texels {
     clips: Option<TexelView>,
 }
 
-/// What a list has room for, or where a scene's share of it begins.
+/// Numbers of elements: the capacity of a list, or the start of a range.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Room {
+pub struct ListExtent {
     /// Splats.
     pub splats: u64,
-    /// Clips on the screen.
+    /// Screen clips.
     pub clips: u64,
 }
 
-impl Room {
-    /// Both together.
+impl ListExtent {
+    /// Sum of both.
     pub fn with(self, other: Self) -> Self {
         Self { splats: self.splats + other.splats, clips: self.clips + other.clips }
     }
@@ -77,28 +77,28 @@ impl Room {
 struct BoxLevel {
     /// Its first box.
     start: u64,
-    /// Its boxes, with those that fill it up.
+    /// Its boxes, padding included.
     boxes: u64,
 }
 
 impl SplatList {
-    /// A list for frames of `variant`, with as many rows of attributes as an `old` one. Passes write to `incomplete`.
+    /// Creates a list for frames of `variant`, with at least the attribute rows of the `old` one. Tile passes write to `incomplete`.
     pub fn new(
         variant: &Variant,
-        room: Room,
+        extent: ListExtent,
         id: u64,
         old: Option<&Self>,
         incomplete: &Arc<Buffer>,
     ) -> Result<Self> {
         let device = incomplete.device();
-        let levels = levels(room.splats);
+        let levels = levels(extent.splats);
         let boxes = levels.last().map_or(0, |top| top.start + top.boxes);
         let rows = variant.attribute_rows().max(old.map_or(1, |old| old.rows));
         let buffer = |name, bytes: u64| Buffer::texels(device, name, bytes.max(ALIGNMENT));
-        let clips = || buffer("screen clips", size_of::<ScreenClip>() as u64 * room.clips);
-        let splats = buffer("splats", SPLAT * room.splats)?;
+        let clips = || buffer("screen clips", size_of::<ScreenClip>() as u64 * extent.clips);
+        let splats = buffer("splats", SPLAT * extent.splats)?;
         let boxes = buffer("boxes", BOX * boxes)?;
-        let attributes = buffer("attributes", ATTRIBUTE_ROW * rows * room.splats)?;
+        let attributes = buffer("attributes", ATTRIBUTE_ROW * rows * extent.splats)?;
         let clips = variant.clips.then(clips).transpose()?;
         let texels = || -> Result<Texels> {
             Ok(Texels {
@@ -109,35 +109,37 @@ impl SplatList {
             })
         };
         Ok(Self {
-            texels: variant.team.subgroups.then(texels).transpose()?,
+            texels: variant.workgroup.subgroups.then(texels).transpose()?,
             splats,
             boxes,
             attributes,
             clips,
             incomplete: incomplete.clone(),
             rows,
-            room,
+            extent,
             levels,
             id,
         })
     }
 
-    /// Whether it does for such frames, too, and is not far too long for them.
-    pub fn fits(&self, variant: &Variant, room: Room) -> bool {
-        let enough = |there: u64, needed: u64| there >= needed && there <= (MOST_SPARE * needed).max(1 << 16);
+    /// Whether it fits such frames without being far too large.
+    pub fn fits(&self, variant: &Variant, extent: ListExtent) -> bool {
+        let fits = |available: u64, needed: u64| {
+            available >= needed && available <= (MOST_EXCESS * needed).max(1 << 16)
+        };
         self.rows >= variant.attribute_rows()
             && self.clips.is_some() >= variant.clips
-            && self.texels.is_some() == variant.team.subgroups
-            && enough(self.room.splats, room.splats)
-            && self.room.clips >= room.clips
+            && self.texels.is_some() == variant.workgroup.subgroups
+            && fits(self.extent.splats, extent.splats)
+            && self.extent.clips >= extent.clips
     }
 
-    /// Rows of attributes of a splat.
+    /// Attribute rows per splat.
     pub fn rows(&self) -> u64 {
         self.rows
     }
 
-    /// What passes over tiles see of it in frames of `variant`.
+    /// Bindings of tile passes in frames of `variant`.
     pub fn bindings(&self, variant: &Variant) -> Vec<(&'static shaders::Resource, Binding<'_>)> {
         let mut list = vec![(&resource::INCOMPLETE_FRAME, Binding::whole(&self.incomplete))];
         match &self.texels {
@@ -147,7 +149,7 @@ impl SplatList {
                 list.push((&resource::BOX_TEXELS, Binding::Texels(&texels.boxes)));
                 list.push((&resource::SPLAT_TEXELS, Binding::Texels(&texels.splats)));
                 list.push((&resource::ATTRIBUTE_TEXELS, Binding::Texels(&texels.attributes)));
-                // What is written: the levels above the splats.
+                // Written levels: those above the splats.
                 let start = BOX * self.levels[0].boxes;
                 list.push((
                     &resource::BOXES,
@@ -165,8 +167,12 @@ impl SplatList {
         list
     }
 
-    /// What the footprint pass sees of so many splats and clips from `first` on.
-    pub fn range(&self, first: Room, count: Room) -> Vec<(&'static shaders::Resource, Binding<'_>)> {
+    /// Bindings of the footprint pass for a range.
+    pub fn range(
+        &self,
+        first: ListExtent,
+        count: ListExtent,
+    ) -> Vec<(&'static shaders::Resource, Binding<'_>)> {
         let of_splats = |buffer, bytes| Binding::Storage(buffer, bytes * first.splats, bytes * count.splats);
         let row = ATTRIBUTE_ROW * self.rows;
         let clip = size_of::<ScreenClip>() as u64;
@@ -205,13 +211,13 @@ impl SplatList {
         all.into_iter().flatten().map(Buffer::size).sum()
     }
 
-    /// How many slices there are of so many splats.
+    /// Number of slices of so many splats.
     pub fn slices(&self, splats: u64) -> u32 {
         let above = self.levels.len() > SLICES as usize;
         if above { splats.div_ceil(FAN_OUT.pow(SLICES)).max(1) as u32 } else { 1 }
     }
 
-    /// The hierarchy with a slice of it, as push constants: all of it, if that is the only one.
+    /// Push constants of a slice of the hierarchy; the whole of it, if that is the only slice.
     pub fn hierarchy(&self, [slice, slices]: [u32; 2], most_steps: u32, frame_number: u32) -> Hierarchy {
         let mut starts = [0; 10];
         for (start, level) in starts.iter_mut().zip(&self.levels) {
@@ -230,10 +236,10 @@ impl SplatList {
         }
     }
 
-    /// The steps that make its levels above so many splats, fine to coarse, as push constants.
+    /// Push constants that build the levels above so many splats, fine to coarse.
     pub fn steps(&self, splats: u64) -> impl Iterator<Item = Level> {
         let written = if self.texels.is_some() { self.levels[0].boxes } else { 0 };
-        // A list may be longer than the frame needs: what is above no splat is neither made nor read.
+        // Nodes above the padding of a long list are neither built nor read.
         let mut finer = splats;
         self.levels.windows(2).map(move |pair| {
             let nodes = finer.div_ceil(FAN_OUT).max(1).next_multiple_of(FAN_OUT);
@@ -249,7 +255,7 @@ impl SplatList {
     }
 }
 
-/// The levels above so many splats: at least up to that of blocks, until a level has at most [`FAN_OUT`] nodes.
+/// Levels above so many splats: at least up to blocks, until a level has at most [`FAN_OUT`] nodes.
 fn levels(splats: u64) -> Vec<BoxLevel> {
     let mut nodes = splats.max(RANGE).next_multiple_of(RANGE);
     let mut list: Vec<BoxLevel> = Vec::new();
@@ -265,108 +271,109 @@ fn levels(splats: u64) -> Vec<BoxLevel> {
     }
 }
 
-/// Splats of an instance in a list, for so many surfels: what is beyond those is empty.
+/// Splats of an instance in a list, padding included.
 pub fn slots(surfels: u64) -> u64 {
     surfels.next_multiple_of(RANGE)
 }
 
-/// What the clips of each part of a scene have room for on the screen, for one instance.
-fn clip_room(scene: &Scene) -> Vec<u64> {
+/// Screen clip capacity of each chunk for one instance.
+fn clip_capacities(scene: &Scene) -> Vec<u64> {
     let clips = scene.clip_chunks().unwrap_or_default();
     clips.iter().map(|clips| clips.count.next_multiple_of(CLIP_RANGE)).collect()
 }
 
-/// What so many batches of instances of a scene take of a list.
-pub fn room_of(scene: &Scene, batches: &Batches) -> Room {
-    let clips: u64 = clip_room(scene).iter().sum();
+/// Extent of so many batches of a scene.
+pub fn extent_of(scene: &Scene, batches: &Batches) -> ListExtent {
+    let clips: u64 = clip_capacities(scene).iter().sum();
     let of_batch = |batch| {
         let instances = batches.len(batch);
-        Room { splats: instances * slots(scene.capacity()), clips: instances * clips }
+        ListExtent { splats: instances * slots(scene.capacity()), clips: instances * clips }
     };
-    (0..batches.count()).map(of_batch).fold(Room::default(), Room::with)
+    (0..batches.count()).map(of_batch).fold(ListExtent::default(), ListExtent::with)
 }
 
-/// What a frame of these scenes takes of a list.
-pub fn room_of_frame(device: &Device, scenes: &[Placed<'_>]) -> Room {
+/// Extent of a frame of these scenes.
+pub fn extent_of_frame(device: &Device, scenes: &[Placed<'_>]) -> ListExtent {
     let mut instances: HashMap<u64, (&Scene, u64)> = HashMap::new();
     for Placed { scene, .. } in scenes {
         instances.entry(scene.id).or_insert((scene, 0)).1 += 1;
     }
-    instances.values().fold(Room::default(), |all, (scene, count)| {
-        all.with(room_of(scene, &batches_of(device, scene, room_for(*count))))
+    instances.values().fold(ListExtent::default(), |all, (scene, count)| {
+        all.with(extent_of(scene, &batches_of(device, scene, padded_instances(*count))))
     })
 }
 
-/// How shaders of a device see so many splats: as texels, by teams that are subgroups, or as storage buffers; `None` if they are too many.
-pub fn team_of(device: &Device, room: Room) -> Option<Team> {
+/// Workgroups for a list on a device: subgroups that fetch texels, or shared memory with storage buffers; `None` if the list is too large.
+pub fn workgroup_of(device: &Device, extent: ListExtent) -> Option<TileWorkgroup> {
     let capabilities = device.capabilities();
     let range = capabilities.max_storage_buffer_range;
-    let clips = size_of::<ScreenClip>() as u64 * room.clips;
-    // Of all that is fetched of a splat, nothing has more texels than it has itself.
-    let texels = SPLAT / TexelView::TEXEL * room.splats <= capabilities.max_texels;
-    let nodes = BOX * room.splats / (FAN_OUT - 1);
-    let team = Team::of(capabilities.subgroup_size);
-    if team.subgroups && texels && nodes.max(clips) <= range {
-        return Some(team);
+    let clips = size_of::<ScreenClip>() as u64 * extent.clips;
+    // Splats have the most texels of a list's buffers.
+    let texels = SPLAT / TexelView::TEXEL * extent.splats <= capabilities.max_texels;
+    let nodes = BOX * extent.splats / (FAN_OUT - 1);
+    let workgroup = TileWorkgroup::of(capabilities.subgroup_size);
+    if workgroup.subgroups && texels && nodes.max(clips) <= range {
+        return Some(workgroup);
     }
-    ((SPLAT * room.splats).max(clips) <= range).then(Team::default)
+    ((SPLAT * extent.splats).max(clips) <= range).then(TileWorkgroup::default)
 }
 
-/// Instances for which room is made, so that a scene is not made anew each time there is one more: an eighth more at most, or a quarter just beyond
-/// a power of two.
-pub fn room_for(instances: u64) -> u64 {
+/// Instance capacity for so many instances, so that adding one does not reallocate each time: at most an eighth more, a quarter just above
+/// powers of two.
+pub fn padded_instances(instances: u64) -> u64 {
     instances.next_multiple_of((instances.next_power_of_two() / 8).max(1))
 }
 
-/// A scene's share of a list.
+/// A scene's range of a list.
 #[derive(Clone)]
-pub struct Share {
+pub struct ListRange {
     /// The list.
     pub list: Arc<SplatList>,
-    /// Where its share begins.
-    pub first: Room,
-    /// Of each part and one instance.
+    /// Start of the range.
+    pub first: ListExtent,
+    /// Screen clip capacity per chunk and instance.
     clips: Vec<u64>,
 }
 
-impl Share {
-    /// The share of a scene that begins there.
-    pub fn new(list: &Arc<SplatList>, scene: &Scene, first: Room) -> Self {
-        Self { list: list.clone(), first, clips: clip_room(scene) }
+impl ListRange {
+    /// The range of a scene that starts at `first`.
+    pub fn new(list: &Arc<SplatList>, scene: &Scene, first: ListExtent) -> Self {
+        Self { list: list.clone(), first, clips: clip_capacities(scene) }
     }
 
-    /// Whether it is this one.
-    pub fn is(&self, list: &Arc<SplatList>, first: Room) -> bool {
+    /// Whether it is the range of `list` that starts at `first`.
+    pub fn is_range_of(&self, list: &Arc<SplatList>, first: ListExtent) -> bool {
         Arc::ptr_eq(&self.list, list) && self.first == first
     }
 
-    /// The first splat of an instance of a scene that has room for so many surfels.
+    /// First splat of an instance of a scene with this capacity.
     pub fn first_splat(&self, capacity: u64, batches: &Batches, instance: u64) -> u64 {
-        let [batch, number] = batches.of(instance);
-        self.first.splats + slots(capacity) * (batches.range(batch).start + number)
+        let [batch, index] = batches.of(instance);
+        self.first.splats + slots(capacity) * (batches.range(batch).start + index)
     }
 
-    /// The first clip of a part in a batch.
-    pub fn first_clip(&self, batches: &Batches, batch: u64, part: usize) -> u64 {
-        let [all, before]: [u64; 2] = [self.clips.iter().sum(), self.clips.iter().take(part).sum()];
+    /// First screen clip of a chunk in a batch.
+    pub fn first_clip(&self, batches: &Batches, batch: u64, chunk: usize) -> u64 {
+        let [all, before]: [u64; 2] = [self.clips.iter().sum(), self.clips.iter().take(chunk).sum()];
         self.first.clips + all * batches.range(batch).start + before * batches.len(batch)
     }
 
-    /// What the footprint pass sees of a part of the scene in a batch of instances.
+    /// Bindings of the footprint pass for a chunk in a batch.
     pub fn bindings(
         &self,
         scene: &Scene,
         batches: &Batches,
         batch: u64,
-        number: usize,
+        index: usize,
     ) -> Vec<(&'static shaders::Resource, Binding<'_>)> {
-        let (instances, part) = (batches.len(batch), &scene.chunks()[number]);
-        let first = Room {
-            splats: self.first_splat(scene.capacity(), batches, batches.range(batch).start) + part.start,
-            clips: self.first_clip(batches, batch, number),
+        let (instances, chunk) = (batches.len(batch), &scene.chunks()[index]);
+        let first = ListExtent {
+            splats: self.first_splat(scene.capacity(), batches, batches.range(batch).start) + chunk.start,
+            clips: self.first_clip(batches, batch, index),
         };
-        let clips = self.clips.get(number).copied().unwrap_or_default();
-        let count = Room { splats: instances * slots(part.end - part.start), clips: instances * clips };
+        let clips = self.clips.get(index).copied().unwrap_or_default();
+        let count =
+            ListExtent { splats: instances * slots(chunk.end - chunk.start), clips: instances * clips };
         self.list.range(first, count)
     }
 }

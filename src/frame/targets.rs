@@ -1,6 +1,6 @@
-//! Every render target: name, format, where shaders see it, and when a frame has it.
+//! Render targets: name, format, binding, and the frames that have them.
 
-use super::pass::{Pass, Start, Targets};
+use super::pass::{DrawTargets, InitialContents, Pass};
 use super::pyramids::Pyramids;
 use super::resource::Resource;
 use super::variant::Variant;
@@ -18,34 +18,34 @@ use std::sync::Arc;
 /// Side of a tile, px: TILE of `lib/tile.glsl`.
 pub const TILE: u32 = 8;
 
-/// What a target of a frame is.
+/// Description of a target.
 #[derive(Clone, Copy, Debug)]
-pub struct Description {
+pub struct TargetDescription {
     pub resource: Resource,
-    /// Of a pixel.
+    /// Format of a pixel.
     pub format: Format,
     pub kind: Kind,
-    /// Where shaders see it, if they do.
+    /// Resource that shaders declare, if any.
     pub shader: Option<&'static shaders::Resource>,
 }
 
-/// What a target is kept in.
+/// Storage of a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// An image.
     Image(ImageUse),
-    /// A buffer of so many bytes a pixel, row by row from the top left.
+    /// A buffer of so many bytes per pixel, row by row from the top left.
     Pixels(u64),
 }
 
 /// The targets of a frame.
 pub struct RenderTargets {
-    list: Vec<(Description, Memory)>,
-    /// Of pull–push.
+    list: Vec<(TargetDescription, Memory)>,
+    /// Pyramids of pull–push.
     pub pyramids: Option<Pyramids>,
     /// Width and height, px.
     pub size: [u32; 2],
-    /// What the picture holds.
+    /// Outputs of the picture.
     pub outputs: Outputs,
 }
 
@@ -54,7 +54,7 @@ enum Memory {
     Buffer(Buffer),
 }
 
-/// A target as a report shows it.
+/// Name, format and memory of a target, for reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct TargetInfo {
@@ -62,19 +62,19 @@ pub struct TargetInfo {
     pub name: &'static str,
     /// Its format; for buffers, that of a pixel.
     pub format: Format,
-    /// Memory that it occupies, bytes.
+    /// Memory, bytes.
     pub bytes: u64,
 }
 
-/// What a host draws to, where shaders see it.
+/// Bindings of a host's attachments.
 pub type HostBindings<'a> = &'a [(&'static shaders::Resource, Binding<'a>)];
 
-/// Targets by name with the bytes of a pixel, of which a tile's are shared.
+/// Bytes per pixel of targets by name; fractions for values shared by several pixels.
 pub type PerPixel = Vec<(&'static str, f64)>;
 
 impl Resource {
-    /// Whether shaders see it as that.
-    pub fn is_seen_as(self, shader: &shaders::Resource) -> bool {
+    /// Whether shaders declare it as `shader`.
+    pub fn is_bound_as(self, shader: &shaders::Resource) -> bool {
         let known: &[&shaders::Resource] = match self {
             Self::Splats => &[
                 &resource::SPLATS,
@@ -97,7 +97,7 @@ impl Resource {
             Self::Coverage => &[&resource::COVERAGE],
             Self::Nearest => &[&resource::NEAREST],
             Self::NearestDepth => &[&resource::NEAREST_DEPTH],
-            Self::NearestNumber => &[&resource::NEAREST_ID],
+            Self::NearestId => &[&resource::NEAREST_ID],
             Self::Pulled => &[&resource::TO_DEPTHS],
             Self::Pushed => &[&resource::FINAL_DEPTHS],
             Self::HostDepth => &[&resource::HOST_DEPTH],
@@ -111,12 +111,12 @@ impl Resource {
     }
 }
 
-/// What a frame of this variant needs, and no more; the pyramids of pull–push aside.
-pub fn describe(variant: &Variant) -> Vec<Description> {
+/// Targets of a frame of this variant, without the pyramids of pull–push.
+pub fn describe(variant: &Variant) -> Vec<TargetDescription> {
     let list = match (variant.pull_push, variant.rasterizer) {
-        (Some(_), _) => of_points(variant),
-        (None, Rasterizer::Draw) => drawn(variant),
-        (None, Rasterizer::Compute) => computed(variant),
+        (Some(_), _) => pull_push_targets(variant),
+        (None, Rasterizer::Draw) => raster_targets(variant),
+        (None, Rasterizer::Compute) => compute_targets(variant),
     };
     list.into_iter().flatten().collect()
 }
@@ -126,15 +126,20 @@ fn image(
     format: Format,
     also: ImageUse,
     shader: Option<&'static shaders::Resource>,
-) -> Description {
-    Description { resource, format, kind: Kind::Image(also), shader }
+) -> TargetDescription {
+    TargetDescription { resource, format, kind: Kind::Image(also), shader }
 }
 
-fn pixels(resource: Resource, format: Format, bytes: u64, shader: &'static shaders::Resource) -> Description {
-    Description { resource, format, kind: Kind::Pixels(bytes), shader: Some(shader) }
+fn pixels(
+    resource: Resource,
+    format: Format,
+    bytes: u64,
+    shader: &'static shaders::Resource,
+) -> TargetDescription {
+    TargetDescription { resource, format, kind: Kind::Pixels(bytes), shader: Some(shader) }
 }
 
-/// Format of sums of one number, or of four.
+/// Format of sums of one channel, or of four.
 pub fn sums_format(precision: Precision, wide: bool) -> Format {
     match (precision, wide) {
         (Precision::Full, true) => Format::R32G32B32A32_SFLOAT,
@@ -144,17 +149,17 @@ pub fn sums_format(precision: Precision, wide: bool) -> Format {
     }
 }
 
-/// Bytes of coverage, a bit a sample.
+/// Bytes of coverage per pixel: one bit per sample.
 const COVERAGE: u64 = 4;
 
-/// The samples that are covered.
-fn coverage(variant: &Variant) -> Option<Description> {
+/// The coverage mask.
+fn coverage(variant: &Variant) -> Option<TargetDescription> {
     let coverage = pixels(Resource::Coverage, Format::R32_UINT, COVERAGE, &resource::COVERAGE);
     variant.coverage.then_some(coverage)
 }
 
-/// The images that compute shaders write.
-fn stored_outputs(outputs: Outputs) -> [Option<Description>; 4] {
+/// Output images of compute passes.
+fn stored_outputs(outputs: Outputs) -> [Option<TargetDescription>; 4] {
     let output = |resource, format, shader| image(resource, format, ImageUse::StoredOutput, Some(shader));
     let colour = Format::R32G32B32A32_SFLOAT;
     [
@@ -165,7 +170,7 @@ fn stored_outputs(outputs: Outputs) -> [Option<Description>; 4] {
     ]
 }
 
-fn drawn(variant: &Variant) -> Vec<Option<Description>> {
+fn raster_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
     let sums = |wide| sums_format(variant.precision, wide);
     let sampled = |resource, format, shader| image(resource, format, ImageUse::Sampled, Some(shader));
     let output = |resource, format| image(resource, format, ImageUse::Output, None);
@@ -181,16 +186,16 @@ fn drawn(variant: &Variant) -> Vec<Option<Description>> {
     ]
 }
 
-fn computed(variant: &Variant) -> Vec<Option<Description>> {
+fn compute_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
     let outputs = stored_outputs(variant.outputs).into_iter();
     if !variant.split && !variant.sliced {
         return outputs.collect();
     }
     let visibility = pixels(Resource::Visibility, Format::R32_UINT, 4, &resource::VISIBILITY);
     if variant.visibility == Visibility::Nearest {
-        // What the dispatches of the nearest pass leave each other: depths and numbers of splats.
-        let winners = pixels(Resource::Sums0, Format::R32_UINT, 4, &resource::SUMS0);
-        return [Some(visibility), Some(winners), coverage(variant)].into_iter().chain(outputs).collect();
+        // State between the slices of the nearest pass: depths and ids of splats.
+        let nearest_splats = pixels(Resource::Sums0, Format::R32_UINT, 4, &resource::SUMS0);
+        return [Some(visibility), Some(nearest_splats), coverage(variant)].into_iter().chain(outputs).collect();
     }
     let sums = |resource, wide: bool, shader| {
         let format = sums_format(Precision::Full, wide);
@@ -205,61 +210,62 @@ fn computed(variant: &Variant) -> Vec<Option<Description>> {
     stages.into_iter().chain(outputs).collect()
 }
 
-fn of_points(variant: &Variant) -> Vec<Option<Description>> {
-    let drawn = |resource, format, shader| {
-        variant.draws_points().then(|| image(resource, format, ImageUse::Sampled, Some(shader)))
+fn pull_push_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
+    let raster_target = |resource, format, shader| {
+        variant.has_raster_points().then(|| image(resource, format, ImageUse::Sampled, Some(shader)))
     };
     let nearest = pixels(Resource::Nearest, Format::R64_UINT, 8, &resource::NEAREST);
     let points = [
-        variant.computes_points().then_some(nearest),
-        drawn(Resource::NearestDepth, Format::D32_SFLOAT, &resource::NEAREST_DEPTH),
-        drawn(Resource::NearestNumber, Format::R32_UINT, &resource::NEAREST_ID),
+        variant.has_compute_points().then_some(nearest),
+        raster_target(Resource::NearestDepth, Format::D32_SFLOAT, &resource::NEAREST_DEPTH),
+        raster_target(Resource::NearestId, Format::R32_UINT, &resource::NEAREST_ID),
     ];
     points.into_iter().chain(stored_outputs(variant.outputs)).collect()
 }
 
-/// What shaders see of the targets of a frame: descriptor set 1.
+/// Resources of descriptor set 1.
 pub fn shader_resources(variant: &Variant) -> Vec<&'static shaders::Resource> {
     let of_targets = describe(variant);
     let of_splats = if variant.is_tiled() { splat_resources(variant) } else { Vec::new() };
     of_targets.iter().filter_map(|target| target.shader).chain(of_splats).collect()
 }
 
-/// What passes over tiles see of the splats of a frame.
+/// Resources of the splat list in tile passes.
 fn splat_resources(variant: &Variant) -> Vec<&'static shaders::Resource> {
-    let (of_splats, clips) = match variant.team.subgroups {
-        true => (
+    let (of_splats, clips) = if variant.workgroup.subgroups {
+        (
             &[&resource::BOX_TEXELS, &resource::SPLAT_TEXELS, &resource::ATTRIBUTE_TEXELS][..],
             &resource::CLIP_TEXELS,
-        ),
-        false => (&[&resource::FRAME_SPLATS, &resource::FRAME_ATTRIBUTES][..], &resource::FRAME_CLIPS),
+        )
+    } else {
+        (&[&resource::FRAME_SPLATS, &resource::FRAME_ATTRIBUTES][..], &resource::FRAME_CLIPS)
     };
     let clips = variant.clips.then_some(clips);
     let others = [&resource::BOXES, &resource::INCOMPLETE_FRAME];
     of_splats.iter().copied().chain(others).chain(clips).collect()
 }
 
-/// What the targets of a frame take.
+/// Bytes per pixel of a frame's targets.
 pub fn per_pixel(variant: &Variant) -> PerPixel {
-    let bytes = |target: &Description| match target.kind {
+    let bytes = |target: &TargetDescription| match target.kind {
         Kind::Image(_) => pixel_bytes(target.format) as f64,
         Kind::Pixels(bytes) => bytes as f64,
     };
     let mut list: PerPixel =
         describe(variant).iter().map(|target| (target.resource.name(), bytes(target))).collect();
     if variant.pull_push.is_some() {
-        // The picture comes last.
+        // The picture is last.
         list.splice(list.len() - 1..list.len() - 1, Pyramids::per_pixel(variant));
     }
     list
 }
 
-/// Whether the coverage of a picture of this size fits a buffer that shaders of the device can see.
+/// Whether the coverage of a picture of this size fits a storage buffer range.
 pub fn coverage_fits(capabilities: &Capabilities, size: [u32; 2]) -> bool {
     COVERAGE * pixels_of(size) <= capabilities.max_storage_buffer_range
 }
 
-/// Whether the targets between compute passes, which split and sliced frames have, fit the buffers that shaders of the device can see.
+/// Whether the targets between compute passes, which split and sliced frames have, fit a storage buffer range.
 pub fn stage_targets_fit(capabilities: &Capabilities, size: [u32; 2]) -> bool {
     pixel_bytes(sums_format(Precision::Full, true)) * pixels_of(size) <= capabilities.max_storage_buffer_range
 }
@@ -269,7 +275,7 @@ pub fn pixels_of(size: [u32; 2]) -> u64 {
     u64::from(size[0]) * u64::from(size[1])
 }
 
-/// Refuses a size that `device` has no targets of, with its limit.
+/// Rejects sizes beyond the limits of `device`.
 pub fn check_size(device: &Device, size: [u32; 2]) -> Result<()> {
     let limit = device.capabilities().max_image_side;
     let [width, height] = size;
@@ -285,9 +291,9 @@ pub fn check_size(device: &Device, size: [u32; 2]) -> Result<()> {
 }
 
 impl RenderTargets {
-    /// The targets of `variant` at `size` px.
+    /// Creates the targets of `variant` at `size` px.
     pub fn new(device: &Arc<Device>, variant: &Variant, size: [u32; 2]) -> Result<Self> {
-        let make = |target: Description| {
+        let make = |target: TargetDescription| {
             let name = target.resource.name();
             let memory = match target.kind {
                 Kind::Image(also) => Memory::Image(Image::target(device, name, target.format, size, also)?),
@@ -302,9 +308,9 @@ impl RenderTargets {
         Ok(Self { list, pyramids, size, outputs: variant.outputs })
     }
 
-    /// Coverage, where a frame has it, beside the targets of a host.
+    /// Creates coverage, if needed, for targets of a host.
     pub fn of_host(device: &Arc<Device>, variant: &Variant, size: [u32; 2]) -> Result<Self> {
-        let make = |target: Description| {
+        let make = |target: TargetDescription| {
             let buffer = Buffer::storage(device, target.resource.name(), COVERAGE * pixels_of(size))?;
             Ok((target, Memory::Buffer(buffer)))
         };
@@ -323,17 +329,17 @@ impl RenderTargets {
         })
     }
 
-    /// What a pass sees of them, and of a host's targets: descriptor set 1. It must not outlive them.
+    /// Creates descriptor set 1 of a pass, of these and a host's targets. It must not outlive them.
     pub fn set(&self, device: &Arc<Device>, pass: &Pass, of_host: HostBindings<'_>) -> Result<DescriptorSet> {
         let all = self.bindings().chain(of_host.iter().copied());
-        DescriptorSet::new(device, &all.filter(|(resource, _)| pass.sees(resource)).collect::<Vec<_>>())
+        DescriptorSet::new(device, &all.filter(|(resource, _)| pass.binds(resource)).collect::<Vec<_>>())
     }
 
     fn find(&self, resource: Resource) -> Option<&Memory> {
         self.list.iter().find(|(target, _)| target.resource == resource).map(|(_, memory)| memory)
     }
 
-    /// A target that is an image.
+    /// The image of a target.
     pub fn image(&self, resource: Resource) -> Option<&Image> {
         match self.find(resource)? {
             Memory::Image(image) => Some(image),
@@ -341,7 +347,7 @@ impl RenderTargets {
         }
     }
 
-    /// A target that is a buffer.
+    /// The buffer of a target.
     pub fn buffer(&self, resource: Resource) -> Option<&Buffer> {
         match self.find(resource)? {
             Memory::Image(_) => None,
@@ -349,22 +355,22 @@ impl RenderTargets {
         }
     }
 
-    /// Adds a target as it is touched, if it is there.
+    /// Adds the access of a target to `uses`, if it exists.
     pub fn extend_uses(&self, uses: &mut Vec<Use>, resource: Resource, access: Access) {
         match self.find(resource) {
             Some(Memory::Image(image)) => uses.push(image.with(access.of_image())),
             Some(Memory::Buffer(buffer)) => uses.push(buffer.with(access)),
-            None => uses.extend(self.planes_of(resource, access)),
+            None => uses.extend(self.attribute_uses(resource, access)),
         }
     }
 
-    /// The planes of a pyramid, as they are touched.
-    fn planes_of(&self, resource: Resource, access: Access) -> impl Iterator<Item = Use> {
+    /// Accesses of a pyramid's attribute buffers.
+    fn attribute_uses(&self, resource: Resource, access: Access) -> impl Iterator<Item = Use> {
         let pyramid = self.pyramids.as_ref().and_then(|pyramids| pyramids.of(resource));
         pyramid.into_iter().flat_map(move |pyramid| pyramid.with(access))
     }
 
-    /// Empties a target, if it is there: points that are none are all ones, everything else is zeros.
+    /// Clears a target, if it exists: nearest points to ones, others to zeros.
     pub fn clear(&self, enc: &mut Encoder<'_, '_>, resource: Resource) {
         match (self.buffer(resource), resource) {
             (Some(buffer), Resource::Nearest) => enc.ones(buffer),
@@ -376,7 +382,7 @@ impl RenderTargets {
         }
     }
 
-    /// The images that are read on the CPU.
+    /// Output images, to be read back.
     pub fn outputs(&self) -> impl Iterator<Item = &Image> {
         [Resource::Image, Resource::Normal, Resource::Depth, Resource::Id]
             .into_iter()
@@ -393,9 +399,9 @@ impl RenderTargets {
         self.size.map(|side| side.div_ceil(TILE))
     }
 
-    /// Every target that there is.
+    /// All targets.
     pub fn list(&self) -> Vec<TargetInfo> {
-        let info = |(target, memory): &(Description, Memory)| TargetInfo {
+        let info = |(target, memory): &(TargetDescription, Memory)| TargetInfo {
             name: target.resource.name(),
             format: target.format,
             bytes: match memory {
@@ -411,32 +417,32 @@ impl RenderTargets {
     }
 }
 
-impl Targets {
-    /// The attachments of its render pass in frames of `variant`: colours, and depth.
+impl DrawTargets {
+    /// Attachments of its render pass in frames of `variant`: colours, and depth.
     pub fn attachments(&self, variant: &Variant) -> (Vec<Attachment>, Option<Attachment>) {
         let all = describe(variant);
-        let attachment = |(resource, start): &(Resource, Start)| {
+        let attachment = |(resource, contents): &(Resource, InitialContents)| {
             let found = all.iter().find(|target| target.resource == *resource);
-            found.map_or(Attachment::Absent, |target| match start {
-                Start::Cleared => Attachment::Cleared(target.format),
-                Start::Overwritten => Attachment::Overwritten(target.format),
-                Start::Tested => Attachment::Tested(target.format),
+            found.map_or(Attachment::Absent, |target| match contents {
+                InitialContents::Cleared => Attachment::Cleared(target.format),
+                InitialContents::Overwritten => Attachment::Overwritten(target.format),
+                InitialContents::Tested => Attachment::Tested(target.format),
             })
         };
         (self.colours.iter().map(attachment).collect(), self.depth.as_ref().map(attachment))
     }
 
-    /// The images of `targets` that it draws to: colours in their order, then depth.
+    /// Images of its framebuffer: colours in order, then depth.
     pub fn images<'a>(&self, targets: &'a RenderTargets) -> Vec<&'a Image> {
         let all = self.colours.iter().chain(&self.depth);
         all.filter_map(|(resource, _)| targets.image(*resource)).collect()
     }
 
-    /// How it touches them.
+    /// Accesses of its attachments.
     pub fn accesses(&self) -> impl Iterator<Item = (Resource, Access)> {
-        let depth = self.depth.map(|(resource, start)| match start {
-            Start::Tested => (resource, Access::DEPTH_TEST),
-            Start::Cleared | Start::Overwritten => (resource, Access::DEPTH_WRITE),
+        let depth = self.depth.map(|(resource, contents)| match contents {
+            InitialContents::Tested => (resource, Access::DEPTH_TEST),
+            InitialContents::Cleared | InitialContents::Overwritten => (resource, Access::DEPTH_WRITE),
         });
         self.colours.iter().map(|(resource, _)| (*resource, Access::COLOUR_WRITE)).chain(depth)
     }

@@ -1,24 +1,24 @@
-//! How long frames and their passes took.
+//! Statistics of frame and pass times.
 
 use crate::vk::PassTime;
 use std::fmt;
 use std::time::Duration;
 
-/// Times of one command's frames.
+/// Times of the frames of a command.
 #[derive(Clone, Debug, Default)]
 pub struct Times {
-    /// Frames ever added.
+    /// Frames added, with the warm-up.
     added: usize,
-    /// Milliseconds of those that count.
+    /// Milliseconds of measured frames.
     frames: Vec<f64>,
     passes: Vec<(&'static str, Vec<f64>)>,
 }
 
-/// Milliseconds over the frames that count.
+/// Statistics over measured frames, ms.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Statistics {
-    /// The middle one; the mean of the two in the middle if there is none.
+    /// Median; the mean of the two middle values of an even number.
     pub median: f64,
     /// Least.
     pub min: f64,
@@ -27,9 +27,9 @@ pub struct Statistics {
 }
 
 impl Times {
-    /// Adds a frame: how long its caller waited for it, and its passes on the GPU.
+    /// Adds a frame: the time that its caller waited, and its passes on the GPU.
     ///
-    /// The second frame makes the first one forgotten: that was the warm-up, which makes pipelines and targets.
+    /// The second frame discards the first, a warm-up that creates pipelines and targets.
     pub fn add(&mut self, frame: Duration, passes: &[PassTime]) {
         self.added += 1;
         if self.added == 2 {
@@ -45,24 +45,24 @@ impl Times {
         }
     }
 
-    /// Frames that count.
+    /// Number of measured frames.
     pub fn count(&self) -> usize {
         self.frames.len()
     }
 
-    /// Whole frames, as their caller waited for them.
+    /// Whole frames, as their caller waited.
     pub fn frame(&self) -> Option<Statistics> {
         Statistics::of(&self.frames)
     }
 
-    /// Each pass on the GPU, in the order in which they run; empty without timestamps.
+    /// Passes on the GPU, in their order; empty without timestamps.
     pub fn passes(&self) -> impl Iterator<Item = (&'static str, Statistics)> {
         self.passes.iter().filter_map(|(label, times)| Some((*label, Statistics::of(times)?)))
     }
 }
 
 impl Statistics {
-    /// Of milliseconds in any order; `None` of none.
+    /// Statistics of unsorted milliseconds; `None` if empty.
     pub fn of(times: &[f64]) -> Option<Self> {
         let mut sorted = times.to_vec();
         sorted.sort_by(f64::total_cmp);
@@ -72,7 +72,7 @@ impl Statistics {
     }
 }
 
-/// A table with a line a pass.
+/// A table with a line per pass.
 impl fmt::Display for Times {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{:<16}{:>12}{:>12}{:>12}  ms", "pass", "median", "min", "max")?;

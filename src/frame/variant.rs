@@ -1,4 +1,4 @@
-//! What decides which pipelines and targets a frame needs.
+//! Variants: the keys of pipelines and targets.
 
 use super::pass::Scope;
 use super::renderer::RenderOptions;
@@ -9,29 +9,29 @@ use crate::settings::{Alpha, Cull, Outputs, Precision, Rasterizer, Settings, Sha
 use crate::vk::Constants;
 use crate::vk::shaders::{Resource, constant, resource};
 
-/// The key of targets, and of the pipelines that visit pixels: what the scenes of a frame have together and what the frame wants, and nothing
-/// that changes from frame to frame.
+/// Key of targets and of pipelines over pixels: properties of the scenes and the settings that select code and formats, without values that
+/// change per frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Variant {
     /// Perspective or orthographic.
     pub perspective: bool,
-    /// Splats whose normal faces away are dropped.
+    /// Back faces are culled.
     pub cull_back: bool,
-    /// The image of a disc.
+    /// Projection of a disc.
     pub footprint: Footprint,
     /// The kernel is Confetti's.
     pub confetti: bool,
-    /// Which splats a pixel sees.
+    /// Which splats a pixel shows.
     pub visibility: Visibility,
-    /// Points, pyramids of them, and their rules.
+    /// Pull–push, and its rules.
     pub pull_push: Option<PullPush>,
-    /// What the sums are divided by.
+    /// Divisor of the sums.
     pub normalization: Normalization,
     /// Kernels are multiplied by normalization weights.
     pub weights: bool,
-    /// Splats are lit, not pixels.
+    /// Shading is per splat, not per pixel.
     pub shade_splats: bool,
-    /// Only axes that are shorter than the low-pass filter are widened by it.
+    /// The low-pass filter widens only axes shorter than itself.
     pub widen_small: bool,
     /// Splats are counted by cull reason.
     pub count: bool,
@@ -39,96 +39,96 @@ pub struct Variant {
     pub normals: bool,
     /// Depths are summed.
     pub depth: bool,
-    /// Colours are summed: a scene's, light, or what stands in for them, where what is summed is not divided.
+    /// Colours are summed: of the scene, lit, or the albedo if sums are not divided.
     pub colours: bool,
-    /// Some of the colours may be beyond 1.
+    /// Some colours may be above 1.
     pub unbounded_colours: bool,
-    /// There are lines or triangles.
+    /// Scenes have lines or triangles.
     pub primitives: bool,
-    /// Colours are looked up in a texture; how the scene holds its texels.
+    /// Format of the texels, if colours come from a texture.
     pub texture: Option<ColourStream>,
-    /// Points shine in their own way, which is looked up by their numbers.
+    /// Materials of points are looked up by id.
     pub materials: bool,
-    /// α is the part of a pixel that is covered.
+    /// α is the covered part of a pixel.
     pub coverage: bool,
-    /// What the picture shows.
+    /// Quantity that the picture shows.
     pub shading: Shading,
-    /// Directional lights.
+    /// Number of directional lights.
     pub lights: u32,
-    /// Images beside the picture.
+    /// Outputs in addition to colour.
     pub outputs: Outputs,
     /// Float width of the sums, or of the samples.
     pub precision: Precision,
-    /// What visits the pixels of splats and points; lines and triangles are always computed.
+    /// Rasterizer of splats and points; lines and triangles always take the compute path.
     pub rasterizer: Rasterizer,
-    /// For tiles: visibility, attribute and normalize are passes of their own.
+    /// Tile path: visibility, attribute and normalize are separate passes.
     pub split: bool,
-    /// For tiles: their splats are taken in several dispatches, as more may be on a tile than one dispatch takes.
+    /// Tile path: dispatches are sliced, because a tile may have more splats than one dispatch visits.
     pub sliced: bool,
-    /// For tiles: some discs end at clip lines.
+    /// Tile path: some discs have clip lines.
     pub clips: bool,
-    /// For tiles: some normalization weights are at the corners of surfels' squares.
+    /// Tile path: some normalization weights are at the corners of surfels' squares.
     pub corners: bool,
-    /// Who rasterizes a tile.
-    pub team: Team,
+    /// Tile path: workgroups of tile passes.
+    pub workgroup: TileWorkgroup,
 }
 
-/// The invocations that rasterize a tile together.
+/// Workgroup of a tile pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Team {
-    /// How many they are: a power of two from 8 to 64.
+pub struct TileWorkgroup {
+    /// Invocations: a power of two from 8 to 64.
     pub lanes: u32,
-    /// They are a subgroup; otherwise they pass values on by shared memory.
+    /// It is one subgroup; otherwise lanes exchange values through shared memory.
     pub subgroups: bool,
 }
 
-impl Team {
-    /// The team of devices whose subgroups have so many invocations that can shuffle.
+impl TileWorkgroup {
+    /// The workgroup for devices whose subgroups of this size support shuffles.
     pub fn of(subgroup_size: u32) -> Self {
         let fits = (8..=64).contains(&subgroup_size) && subgroup_size.is_power_of_two();
         if fits { Self { lanes: subgroup_size, subgroups: true } } else { Self::default() }
     }
 }
 
-impl Default for Team {
-    /// What every device has.
+impl Default for TileWorkgroup {
+    /// Supported by every device.
     fn default() -> Self {
         Self { lanes: 8, subgroups: false }
     }
 }
 
-/// The key of the pipelines that visit a scene's own surfels, lines and triangles: what it has and what the frame wants of it.
+/// Key of the pipelines over a scene's surfels, lines and triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SceneVariant {
-    /// That of the frame.
+    /// Variant of the frame.
     pub frame: Variant,
-    /// Discs are ellipses.
+    /// Surfels are ellipses.
     pub ellipses: bool,
-    /// Some discs end at clip lines.
+    /// Some discs have clip lines.
     pub clips: bool,
-    /// Some surfels are never dropped for facing away.
+    /// Some surfels are two-sided, so never culled as back faces.
     pub two_sided: bool,
     /// Kernels are multiplied by the scene's normalization weights.
     pub weights: bool,
-    /// Some of these are at the corners of surfels' squares.
+    /// Some weights are at the corners of surfels' squares.
     pub corners: bool,
-    /// The colours that are summed, in the form in which the scene holds them.
+    /// Format of the summed colours.
     pub colours: ColourStream,
-    /// What its passes see, whether the frame wants it or not: its descriptor sets are the same in all frames.
-    pub held: Held,
-    /// Lines and triangles, with their colours in the same way.
+    /// Optional streams of the scene, bound in all frames: its descriptor sets do not depend on the settings.
+    pub stored: StoredStreams,
+    /// Lines and triangles, and the format of their colours.
     pub primitives: PrimitiveKinds,
-    /// Where the scene has its surfels' values.
+    /// Offsets and strides of surfel streams.
     pub layout: SurfelLayout,
-    /// How it holds colours that the shaders have to look at to know what is valid, and whether they have to look at anything.
+    /// Colour format, if shaders validate surfels.
     pub unchecked: Option<ColourStream>,
-    /// There are instances, each seen in its own axes and unit.
+    /// Scenes are instanced, each with its own axes and unit.
     pub instanced: bool,
 }
 
-/// Which of the streams that it may lack a scene has, beside those that decide more than what is bound.
+/// Optional streams that a scene has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Held {
+pub struct StoredStreams {
     /// Colours of surfels.
     pub colours: bool,
     /// Normalization weights.
@@ -138,7 +138,7 @@ pub struct Held {
 }
 
 impl Variant {
-    /// What a frame of scenes that have these `streams` needs.
+    /// The variant of a frame of scenes with these `streams`.
     pub fn new(
         streams: &[Streams],
         perspective: bool,
@@ -147,23 +147,24 @@ impl Variant {
         rasterizer: Rasterizer,
     ) -> Self {
         let shading = settings.shading;
-        // Points are none of the splats that could be chosen.
+        // Splatting axes have no effect on pull–push.
         let splatting = if settings.pull_push.is_some() { Splatting::default() } else { settings.splatting };
-        let wants_colour = matches!(shading, Shading::Lit | Shading::Colour);
+        let needs_colour = matches!(shading, Shading::Lit | Shading::Colour);
         let shade_splats = shading == Shading::Lit && splatting.shade == Shade::Splat;
         let robust = settings.pull_push.is_some_and(|pull_push| pull_push.rules == Rules::Robust);
-        let texture = streams.iter().find_map(|streams| streams.texture).filter(|_| robust && wants_colour);
-        let held: Vec<_> = match wants_colour && texture.is_none() {
-            true => streams.iter().flat_map(|own| [own.colours, own.primitives.colours]).collect(),
-            false => Vec::new(),
+        let texture = streams.iter().find_map(|streams| streams.texture).filter(|_| robust && needs_colour);
+        let colours: Vec<_> = if needs_colour && texture.is_none() {
+            streams.iter().flat_map(|streams| [streams.colours, streams.primitives.colours]).collect()
+        } else {
+            Vec::new()
         };
-        // How many there are, or what they weigh, is never divided.
+        // Splat counts and weights are not divided.
         let normalization = match shading {
             Shading::Overlap | Shading::Weight => Normalization::Pixel,
             _ => splatting.normalization,
         };
         let undivided = normalization != Normalization::Pixel && splatting.visibility != Visibility::Nearest;
-        let coloured = held.iter().any(|colours| *colours != ColourStream::None);
+        let coloured = colours.iter().any(|colours| *colours != ColourStream::None);
         let floats = [ColourStream::Linear, ColourStream::Textured, ColourStream::Half];
         let tiled = settings.pull_push.is_none() && rasterizer == Rasterizer::Compute;
         let weights = splatting.normalization == Normalization::Surfel && shading != Shading::Overlap;
@@ -182,8 +183,8 @@ impl Variant {
             count: options.count,
             normals: lit_pixels || shading == Shading::Normal || options.outputs.normal,
             depth: shading == Shading::Depth || options.outputs.depth,
-            colours: wants_colour && (undivided || shade_splats || coloured),
-            unbounded_colours: held.iter().any(|colours| floats.contains(colours)),
+            colours: needs_colour && (undivided || shade_splats || coloured),
+            unbounded_colours: colours.iter().any(|colours| floats.contains(colours)),
             primitives: streams.iter().any(|streams| streams.primitives.any()),
             texture,
             materials: streams.iter().any(|streams| streams.materials)
@@ -199,62 +200,62 @@ impl Variant {
             sliced: false,
             clips: tiled && streams.iter().any(|streams| streams.clips),
             corners: tiled && weights && streams.iter().any(|streams| streams.weights == Some(true)),
-            team: Team::default(),
+            workgroup: TileWorkgroup::default(),
         }
     }
 
-    /// The same with splats that crowd on the picture, or not.
-    pub fn crowded(self, crowded: bool) -> Self {
-        let sliced = crowded && self.is_tiled();
+    /// The variant with sliced dispatches, on the tile path.
+    pub fn with_slices(self, sliced: bool) -> Self {
+        let sliced = sliced && self.is_tiled();
         Self { sliced, split: self.split || sliced, ..self }
     }
 
-    /// Whether splats are rasterized by tiles.
+    /// Whether splats take the tile path.
     pub fn is_tiled(&self) -> bool {
         self.pull_push.is_none() && self.rasterizer == Rasterizer::Compute
     }
 
-    /// Rows of four words that a splat has beside, for tiles: `lib/attributes.glsl`.
+    /// Attribute rows of a splat, on the tile path: `lib/attributes.glsl`.
     pub fn attribute_rows(&self) -> u64 {
         u64::from(self.wide_sums0() || self.weights)
             + u64::from(self.wide_sums1())
             + 2 * u64::from(self.corners)
     }
 
-    /// Whether pull–push draws surfels as points.
-    pub fn draws_points(&self) -> bool {
+    /// Whether pull–push rasterizes surfels as points.
+    pub fn has_raster_points(&self) -> bool {
         self.pull_push.is_some() && self.rasterizer == Rasterizer::Draw
     }
 
-    /// Whether pull–push computes what is nearest: points that are not drawn, lines, triangles.
-    pub fn computes_points(&self) -> bool {
+    /// Whether pull–push projects points by compute shaders: surfels on the compute path, lines, triangles.
+    pub fn has_compute_points(&self) -> bool {
         self.pull_push.is_some() && (self.rasterizer == Rasterizer::Compute || self.primitives)
     }
 
-    /// Whether samples of pull–push have the numbers of points.
+    /// Whether samples of pull–push have point ids.
     pub fn has_ids(&self) -> bool {
         self.outputs.id || self.materials
     }
 
-    /// What passes over pixels see at descriptor set 0.
+    /// Resources of descriptor set 0 of passes over pixels.
     pub fn view_resources(&self) -> Vec<&'static Resource> {
         let texture = self.texture.map(|_| &resource::TEXTURE);
         let materials = self.materials.then_some(&resource::MATERIALS);
-        let blocks = [Some(&resource::FRAME), Some(&resource::VIEWS)];
-        blocks.into_iter().chain([texture, materials]).flatten().collect()
+        let uniforms = [Some(&resource::FRAME), Some(&resource::VIEWS)];
+        uniforms.into_iter().chain([texture, materials]).flatten().collect()
     }
 
-    /// Whether scenes' own colours are summed.
+    /// Whether colours of scenes are summed.
     fn blends_colours(&self) -> bool {
         matches!(self.shading, Shading::Lit | Shading::Colour) && self.texture.is_none()
     }
 
-    /// Whether target 0 sums a vector beside Σw.
+    /// Whether target 0 has a vector after Σw.
     pub fn wide_sums0(&self) -> bool {
         self.normals || self.colours
     }
 
-    /// Whether there is a target 1.
+    /// Whether the frame has target 1.
     pub fn has_sums1(&self) -> bool {
         self.depth || self.wide_sums1()
     }
@@ -264,7 +265,7 @@ impl Variant {
         self.normals && self.colours
     }
 
-    /// The same as specialization constants.
+    /// Specialization constants.
     pub fn constants(&self) -> Constants {
         Constants::default()
             .with(constant::PERSPECTIVE, self.perspective)
@@ -304,14 +305,14 @@ impl Variant {
 }
 
 impl SceneVariant {
-    /// What a frame needs of a scene that has `streams`, and may be `instanced`.
+    /// The variant of a scene with `streams`.
     pub fn new(frame: Variant, streams: Streams, instanced: bool) -> Self {
         let weights = streams.weights.filter(|_| frame.weights);
         let blended = |colours| if frame.blends_colours() { colours } else { ColourStream::None };
         let reads = frame.blends_colours() || frame.texture.is_some();
         let has = |colours| colours != ColourStream::None;
         Self {
-            held: Held {
+            stored: StoredStreams {
                 colours: has(streams.colours),
                 weights: streams.weights.is_some(),
                 vertex_colours: has(streams.primitives.colours),
@@ -324,7 +325,7 @@ impl SceneVariant {
             corners: weights == Some(true),
             colours: blended(streams.colours),
             primitives: PrimitiveKinds { colours: blended(streams.primitives.colours), ..streams.primitives },
-            // Where colours are is no matter to who does not read them.
+            // Pipelines that read no colours do not depend on their layout.
             layout: match reads || streams.unchecked {
                 true => streams.layout,
                 false => SurfelLayout {
@@ -337,20 +338,20 @@ impl SceneVariant {
         }
     }
 
-    /// What its passes see at descriptor set 0.
+    /// Resources of descriptor set 0.
     pub fn resources(&self, scope: Scope) -> Vec<&'static Resource> {
         let frame = &self.frame;
         let splats = frame.pull_push.is_none();
         let clips = splats && self.clips;
-        let wanted: &[(&'static Resource, bool)] = match scope {
+        let optional: &[(&'static Resource, bool)] = match scope {
             Scope::View => return frame.view_resources(),
             Scope::Surfels => &[
                 (&resource::POSITIONS, true),
                 (&resource::NORMALS, true),
                 (&resource::RADII, true),
-                (&resource::COLOURS, self.held.colours),
+                (&resource::COLOURS, self.stored.colours),
                 (&resource::ELLIPSES, self.ellipses),
-                (&resource::WEIGHTS, self.held.weights),
+                (&resource::WEIGHTS, self.stored.weights),
                 (&resource::CLIPS, clips),
                 (&resource::SCREEN_CLIPS, clips),
                 (&resource::SPLATS, splats),
@@ -360,16 +361,16 @@ impl SceneVariant {
             Scope::Lines | Scope::Triangles => &[
                 (&resource::VERTICES, true),
                 (&resource::LINE_DIRECTIONS, self.primitives.lines),
-                (&resource::VERTEX_COLOURS, self.held.vertex_colours),
+                (&resource::VERTEX_COLOURS, self.stored.vertex_colours),
                 (&resource::ELEMENTS, true),
                 (&resource::LARGE_TRIANGLES, self.primitives.triangles),
             ],
         };
-        let there = wanted.iter().filter(|(_, there)| *there).map(|(resource, _)| *resource);
-        [&resource::FRAME, &resource::VIEWS].into_iter().chain(there).collect()
+        let bound = optional.iter().filter(|(_, bound)| *bound).map(|(resource, _)| *resource);
+        [&resource::FRAME, &resource::VIEWS].into_iter().chain(bound).collect()
     }
 
-    /// The same as specialization constants, with the frame's.
+    /// Specialization constants, with those of the frame.
     pub fn constants(&self) -> Constants {
         self.layout
             .add_to(self.frame.constants())

@@ -284,7 +284,7 @@ fn passes_and_targets_match_the_plan() {
             let names = planned.iter().map(|target| target.0);
             let nearest: Vec<_> = names.filter(|name| name.starts_with("nearest")).collect();
             let drawn = rasterizer == Rasterizer::Draw;
-            assert_eq!(nearest, if drawn { &["nearest_depth", "nearest_number"][..] } else { &["nearest"] });
+            assert_eq!(nearest, if drawn { &["nearest_depth", "nearest_id"][..] } else { &["nearest"] });
         }
         // No splats are made.
         let bytes = renderer.splat_bytes();

@@ -92,9 +92,9 @@ use super::{View, without_background};
 use crate::error::{Error, Result};
 use crate::frame::FrameReport;
 use crate::frame::description::Description;
-use crate::frame::resources::{FrameResources, Retired};
+use crate::frame::resources::{Disposal, FrameResources};
 use crate::frame::targets::check_size;
-use crate::frame::uniforms::Blocks;
+use crate::frame::uniforms::Uniforms;
 use crate::frame::variant::SceneVariant;
 use crate::scene::instance::Instances;
 use crate::settings::Settings;
@@ -163,7 +163,7 @@ impl Renderer {
         let options = plan.options([1, 1]);
         Ok(Self {
             pending: None,
-            frame: FrameResources::new(device, options, Retired::Kept(Vec::new()), Some(host))?,
+            frame: FrameResources::new(device, options, Disposal::Deferred(Vec::new()), Some(host))?,
             deferred: DeferredDestruction::new(frames_in_flight)?,
             reports: Reports::new(frames_in_flight),
             targets: None,
@@ -206,7 +206,7 @@ impl Renderer {
         };
         let views = targets.views();
         self.pending = None;
-        self.frame.forget_targets();
+        self.frame.discard_targets();
         self.deferred.extend(self.frame.take_deferred());
         let old = self.targets.replace(Arc::new(targets));
         self.deferred.defer(old);
@@ -232,14 +232,14 @@ impl Renderer {
         let made = self.make(scenes.into(), view, settings);
         // Also after an error: replaced resources may be in use.
         self.deferred.extend(self.frame.take_deferred());
-        let (blocks, push, area) = made?;
+        let (uniforms, push, area) = made?;
         let scenes: Vec<_> = self.frame.scenes().collect();
         self.reports.begin(&self.device, &scenes)?;
         self.deferred.advance();
         let (timestamps, tail) = self.reports.present();
         // SAFETY: by the caller; there is a report for each frame in flight.
         let mut rec = unsafe { Recorder::of_host_timed(&self.device, cmd, timestamps) };
-        self.frame.record(&mut rec, &blocks);
+        self.frame.record(&mut rec, &uniforms);
         tail.record(&mut rec, &scenes);
         let passes = self.plan.numbered().map(|(_, step)| rec.later(step.pass().name)).collect();
         self.pending = Some(PreparedFrame { push, area, passes });
@@ -280,7 +280,7 @@ impl Renderer {
     /// # Safety
     /// As for [`Renderer::draw`], for the subpass of which `next` is called.
     pub unsafe fn draw_each(&self, mut next: impl FnMut(u32) -> vk::CommandBuffer) -> Result<()> {
-        let (Some(PreparedFrame { push, area, passes }), Some((present, frame))) =
+        let (Some(PreparedFrame { push, area, passes }), Some((current, frame))) =
             (&self.pending, self.frame.frame())
         else {
             return Err(Error::Usage("there is no frame to draw: prepare one, and handle its error".into()));
@@ -289,7 +289,7 @@ impl Renderer {
             let cmd = next(subpass);
             // SAFETY: by the caller.
             let mut draws = unsafe { Draws::of_host(&self.device, cmd, pass, *area) };
-            let Some(prepared) = present.pass(step.pass()) else { continue };
+            let Some(prepared) = current.pass(step.pass()) else { continue };
             match (step, &push.seed) {
                 (Step::Seed, Some(seed)) => prepared.draw(&mut draws, &frame, seed),
                 (Step::Seed, None) => {}
@@ -355,7 +355,7 @@ impl Renderer {
         scenes: Instances<'_>,
         view: &View,
         settings: &Settings,
-    ) -> Result<(Blocks, PushConstants, vk::Rect2D)> {
+    ) -> Result<(Uniforms, PushConstants, vk::Rect2D)> {
         let placed = scenes.placed(&self.device)?;
         let TargetView { area, size, camera, depth } =
             view.in_target(&self.device, self.plan.host.reversed)?;
@@ -365,17 +365,17 @@ impl Renderer {
         let mut frame = self.frame.describe(&placed, &camera, &settings, size)?;
         self.plan.check(&frame.variant)?;
         let origin = [area.offset.x as f32, area.offset.y as f32];
-        frame.blocks.frame.origin = origin;
-        let Description { blocks, variant, scenes: own } = &frame;
+        frame.uniforms.frame.origin = origin;
+        let Description { uniforms, variant, scenes: own } = &frame;
         let format = self.plan.seeded().filter(|_| own.iter().all(can_seed));
         let largest = placed.iter().map(|placed| placed.largest()).reduce(|a, b| Some(a?.max(b?))).flatten();
         let seed = format.zip(largest).and_then(|(format, largest)| {
-            seeding::seed(format, depth, (&blocks.frame, variant.perspective), largest, variant.precision)
+            seeding::seed(format, depth, (&uniforms.frame, variant.perspective), largest, variant.precision)
         });
         let bindings = targets.bindings(&subpasses::inputs(&self.plan));
         self.frame.make(&placed, &frame, targets.size, &bindings)?;
         self.deferred.keep_scenes(&scenes);
-        Ok((frame.blocks, PushConstants { seed, host: layout::Subpass { depth } }, area))
+        Ok((frame.uniforms, PushConstants { seed, host: layout::Subpass { depth } }, area))
     }
 
     /// The attachments, if the area is within them.

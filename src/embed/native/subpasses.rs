@@ -13,9 +13,9 @@ impl Step {
     pub(super) fn pass(self) -> &'static Pass {
         match self {
             Self::Seed => &seed::SEED,
-            Self::Visibility => &visibility::DRAWN,
-            Self::Attribute => &attribute::DRAWN,
-            Self::Nearest => &nearest::DRAWN,
+            Self::Visibility => &visibility::RASTER,
+            Self::Attribute => &attribute::RASTER,
+            Self::Nearest => &nearest::RASTER,
             Self::Normalize => &normalize::IN_SUBPASS,
         }
     }

@@ -1,4 +1,4 @@
-//! The passes of a frame, method by method.
+//! Passes of each method.
 
 mod blended;
 mod nearest;
@@ -9,18 +9,18 @@ use super::variant::Variant;
 use crate::settings::Rasterizer;
 use crate::settings::splatting::Visibility;
 
-/// How the passes of a frame are run.
+/// Path by which passes run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Path {
-    /// By compute shaders.
-    Computed,
-    /// By the device's own rasterizer.
-    Drawn,
-    /// By the same, in subpasses of a host; with the seed pass, if splats start from the host's depth.
+    /// Compute shaders.
+    Compute,
+    /// The hardware rasterizer.
+    Raster,
+    /// The hardware rasterizer in subpasses of a host; with the seed pass, if splats are tested against the host's depth.
     Subpasses { seed: bool },
 }
 
-/// The passes of a frame of `variant` of so many scenes, in their order; in subpasses of a host what is drawn comes last.
+/// Passes of a frame of `variant` with so many scenes, in order; in subpasses of a host, raster passes are last.
 pub fn passes(variant: &Variant, path: Path, scenes: usize) -> Vec<&'static Pass> {
     match (variant.pull_push, variant.visibility) {
         (Some(settings), _) => pull_push::passes(variant, settings.storage, scenes),
@@ -30,11 +30,11 @@ pub fn passes(variant: &Variant, path: Path, scenes: usize) -> Vec<&'static Pass
 }
 
 impl Path {
-    /// That of frames which are not a host's subpasses.
+    /// The path of frames outside a host's subpasses.
     pub fn of(variant: &Variant) -> Self {
         match variant.rasterizer {
-            Rasterizer::Compute => Self::Computed,
-            Rasterizer::Draw => Self::Drawn,
+            Rasterizer::Compute => Self::Compute,
+            Rasterizer::Draw => Self::Raster,
         }
     }
 }

@@ -1,10 +1,10 @@
-//! The passes of every method that shows the nearest splat of each pixel alone.
+//! Methods that show the nearest splat of each pixel.
 //!
 //! ```text
 //! surfels ─ footprint → splats ─ nearest → n, rgb, κ, coverage ─ normalize → picture, normal, depth
 //! ```
 //!
-//! Computed, `nearest` finds the splats of a tile by `boxes`, and writes the picture:
+//! On the compute path, `nearest` finds the splats of a tile by `boxes`, and writes the picture:
 //!
 //! ```text
 //! surfels ─ footprint → splats ─ boxes → hierarchy ─ nearest → picture, normal, depth
@@ -17,11 +17,11 @@ use crate::frame::passes::{boxes::BOXES, footprint::FOOTPRINT, nearest, normaliz
 /// The passes.
 pub fn passes(path: Path) -> Vec<&'static Pass> {
     match path {
-        Path::Computed => vec![&FOOTPRINT, &BOXES, &nearest::COMPUTED],
-        Path::Drawn => vec![&FOOTPRINT, &nearest::DRAWN, &normalize::DRAWN],
-        Path::Subpasses { seed: false } => vec![&FOOTPRINT, &nearest::DRAWN, &normalize::IN_SUBPASS],
+        Path::Compute => vec![&FOOTPRINT, &BOXES, &nearest::COMPUTE],
+        Path::Raster => vec![&FOOTPRINT, &nearest::RASTER, &normalize::RASTER],
+        Path::Subpasses { seed: false } => vec![&FOOTPRINT, &nearest::RASTER, &normalize::IN_SUBPASS],
         Path::Subpasses { seed: true } => {
-            vec![&FOOTPRINT, &SEED, &nearest::DRAWN, &normalize::IN_SUBPASS]
+            vec![&FOOTPRINT, &SEED, &nearest::RASTER, &normalize::IN_SUBPASS]
         }
     }
 }

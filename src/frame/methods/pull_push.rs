@@ -7,8 +7,8 @@
 //! picture ← shade ← 0 ← push ← 1 ← push ← … ← push     holes filled, hidden points replaced, coarse to fine
 //! ```
 //!
-//! The push reads what was pulled of a level and what is final of the coarser one. `pull-push` keeps the two apart, in a pyramid each.
-//! `pull-push-paper` has them take turns as published (§3.5, figure 7), a level in the pyramid of its parity:
+//! Push reads the pulled samples of a level and the final ones of the coarser level. `pull-push` stores these in two pyramids.
+//! `pull-push-paper` alternates as published (§3.5, figure 7): each level is in the pyramid of its parity.
 //!
 //! ```text
 //! pull   even 0 → odd 1 → even 2 → odd 3
@@ -21,14 +21,16 @@ use crate::frame::passes::{copy::COPY, fetch, project, pull::PULL, push::PUSH, s
 use crate::frame::variant::Variant;
 use crate::settings::pull_push::Storage;
 
-/// The passes, where the levels are so kept.
+/// The passes with this storage of levels.
 pub fn passes(variant: &Variant, storage: Storage, scenes: usize) -> Vec<&'static Pass> {
-    let project: &[&Pass] = match (variant.draws_points(), variant.primitives) {
-        (false, false) => &[&project::COMPUTED],
-        (false, true) => &[&project::COMPUTED, &project::LARGE],
-        (true, false) if !variant.count => &[&project::DRAWN],
-        (true, false) => &[&project::DRAWN, &project::BESIDE_DRAWN],
-        (true, true) => &[&project::DRAWN, &project::HANDED_OVER, &project::BESIDE_DRAWN, &project::LARGE],
+    let project: &[&Pass] = match (variant.has_raster_points(), variant.primitives) {
+        (false, false) => &[&project::COMPUTE],
+        (false, true) => &[&project::COMPUTE, &project::LARGE],
+        (true, false) if !variant.count => &[&project::RASTER],
+        (true, false) => &[&project::RASTER, &project::PRIMITIVES],
+        (true, true) => {
+            &[&project::RASTER, &project::COPY_RASTER_POINTS, &project::PRIMITIVES, &project::LARGE]
+        }
     };
     let fetch = if scenes == 0 { &fetch::EMPTY } else { &fetch::FETCH };
     let copy: &[&Pass] = match storage {

@@ -1,7 +1,7 @@
 //! Attribute: splats within ε of the nearest surface → weighted sums (zwicker2004 §6, second pass; `attribute.glsl`).
 
 use super::tiles;
-use crate::frame::pass::{Commands, Over, Pass, Program, Programs, Start, Targets};
+use crate::frame::pass::{Commands, Domain, DrawTargets, InitialContents, Pass, Program, Programs};
 use crate::frame::resource::Resource::{
     Attributes, Boxes, IncompleteFrame, ScreenClips, Splats, Sums0, Sums1, Visibility,
 };
@@ -11,8 +11,8 @@ use crate::vk::shaders::{
 };
 use crate::vk::{Blend, DepthTest, Topology};
 
-/// A workgroup a tile.
-pub static COMPUTED: Pass = Pass {
+/// One workgroup per tile.
+pub static COMPUTE: Pass = Pass {
     name: "attribute",
     reads: &[Splats, Boxes, Attributes, ScreenClips, Visibility],
     writes: &[Sums0, Sums1, IncompleteFrame],
@@ -21,22 +21,23 @@ pub static COMPUTED: Pass = Pass {
     commands: Commands::Dispatches,
 };
 
-/// Draws with additive blending.
-pub static DRAWN: Pass = Pass {
+/// Splat triangles with additive blending.
+pub static RASTER: Pass = Pass {
     name: "attribute",
     reads: &[Splats, ScreenClips],
     writes: &[],
     clears: &[],
     programs: Programs::OfScene(|variant| {
-        let modules = match variant.clips {
-            true => [&ATTRIBUTE_CLIP_LINES_VERTEX, &ATTRIBUTE_CLIP_LINES_FRAGMENT],
-            false => [&ATTRIBUTE_VERTEX, &ATTRIBUTE_FRAGMENT],
+        let modules = if variant.clips {
+            [&ATTRIBUTE_CLIP_LINES_VERTEX, &ATTRIBUTE_CLIP_LINES_FRAGMENT]
+        } else {
+            [&ATTRIBUTE_VERTEX, &ATTRIBUTE_FRAGMENT]
         };
-        vec![Program::draw(modules, Over::SplatTriangles)]
+        vec![Program::draw(modules, Domain::SplatTriangles)]
     }),
-    commands: Commands::Draws(Targets {
-        colours: &[(Sums0, Start::Cleared), (Sums1, Start::Cleared)],
-        depth: Some((Visibility, Start::Tested)),
+    commands: Commands::Draws(DrawTargets {
+        colours: &[(Sums0, InitialContents::Cleared), (Sums1, InitialContents::Cleared)],
+        depth: Some((Visibility, InitialContents::Tested)),
         topology: Topology::Triangles,
         test: DepthTest::NotBehind,
         blend: Blend::Add,

@@ -1,25 +1,25 @@
-//! Boxes: splats' boxes → those of the nodes above them, level by level (`boxes.glsl`).
+//! Boxes: boxes of splats → boxes of the nodes above them, level by level (`boxes.glsl`).
 
-use crate::frame::pass::{Commands, Over, Pass, Program, Programs, Steps};
+use crate::frame::pass::{Commands, Domain, Pass, Program, Programs, StepContext};
 use crate::frame::recording::grid_over;
 use crate::frame::resource::Resource;
 use crate::vk::shaders::{BOXES_COMPUTE, BOXES_SUBGROUPS_COMPUTE};
 use crate::vk::{Access, Recorder};
 
-/// A dispatch a level, an invocation a node.
+/// One dispatch per level, one invocation per node.
 pub static BOXES: Pass = Pass {
     name: "boxes",
     reads: &[],
     writes: &[Resource::Boxes],
     clears: &[],
     programs: Programs::OfFrame(|variant| {
-        let module = if variant.team.subgroups { &BOXES_SUBGROUPS_COMPUTE } else { &BOXES_COMPUTE };
-        vec![Program::compute(module, Over::Level)]
+        let module = if variant.workgroup.subgroups { &BOXES_SUBGROUPS_COMPUTE } else { &BOXES_COMPUTE };
+        vec![Program::compute(module, Domain::Level)]
     }),
     commands: Commands::Steps(record),
 };
 
-fn record(steps: &Steps<'_>, rec: &mut Recorder<'_>) {
+fn record(steps: &StepContext<'_>, rec: &mut Recorder<'_>) {
     let (Some(pipeline), Some(splats)) = (steps.pipeline, steps.frame.splats) else { return };
     let sets: Vec<_> = std::iter::once(steps.frame.view).chain(steps.targets).collect();
     for level in splats.steps(steps.frame.splat_count) {

@@ -1,10 +1,10 @@
-//! Copy: what was pulled of each level → beside the coarser one, where the push reads both (marroquim2008 §3.5, figure 7b).
+//! Copy: pulled samples of each level → the pyramid of the coarser level, from which push reads both (marroquim2008 §3.5, figure 7b).
 
-use crate::frame::pass::{Commands, Pass, Programs, Steps};
+use crate::frame::pass::{Commands, Pass, Programs, StepContext};
 use crate::frame::resource::Resource::{Pulled, Pushed};
 use crate::vk::{Access, Recorder};
 
-/// The copy phase of pyramids that take turns: it completes both.
+/// Completes both ping-pong pyramids.
 pub static COPY: Pass = Pass {
     name: "copy",
     reads: &[Pulled],
@@ -14,7 +14,7 @@ pub static COPY: Pass = Pass {
     commands: Commands::Steps(record),
 };
 
-fn record(Steps { frame, .. }: &Steps<'_>, rec: &mut Recorder<'_>) {
+fn record(StepContext { frame, .. }: &StepContext<'_>, rec: &mut Recorder<'_>) {
     let Some(pyramids) = &frame.targets.pyramids else { return };
     let uses = pyramids.pyramids.iter().flat_map(|pyramid| pyramid.with(Access::COPY_WITHIN));
     let mut enc = rec.pass(COPY.name, &uses.collect::<Vec<_>>());

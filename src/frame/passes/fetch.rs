@@ -1,33 +1,31 @@
-//! Fetch: the nearest point of each pixel → what it is (marroquim2008 §3.1; `fetch.glsl`).
+//! Fetch: nearest point of each pixel → its sample (marroquim2008 §3.1; `fetch.glsl`).
 
-use crate::frame::pass::{Commands, Over, Pass, Program, Programs};
-use crate::frame::resource::Resource::{Nearest, NearestNumber, Pulled};
+use crate::frame::pass::{Commands, Domain, Pass, Program, Programs};
+use crate::frame::resource::Resource::{Nearest, NearestId, Pulled};
 use crate::vk::shaders::{
     FETCH_COMPUTE, FETCH_LINES_COMPUTE, FETCH_RASTER_POINTS_COMPUTE, FETCH_TRIANGLES_COMPUTE,
 };
 
-/// An invocation a pixel, for each part of a scene: the pixels of one's points are not another's, so that their order does not matter. The first
-/// part of the first scene clears what nobody's are. Where lines or triangles are computed, drawn points are among what they were compared with.
+/// One invocation per pixel, for each chunk of a scene. Chunks write disjoint pixels, so their order is free; the first chunk of the first
+/// scene clears empty pixels. With lines or triangles, rasterized points have been copied to the nearest points.
 pub static FETCH: Pass = Pass {
     name: "fetch",
-    reads: &[Nearest, NearestNumber],
+    reads: &[Nearest, NearestId],
     writes: &[Pulled],
     clears: &[],
     programs: Programs::OfScene(|variant| {
-        let surfels = match variant.frame.computes_points() {
-            true => &FETCH_COMPUTE,
-            false => &FETCH_RASTER_POINTS_COMPUTE,
-        };
-        let lines = Program::compute(&FETCH_LINES_COMPUTE, Over::PixelsOfLines);
-        let triangles = Program::compute(&FETCH_TRIANGLES_COMPUTE, Over::PixelsOfTriangles);
+        let surfels =
+            if variant.frame.has_compute_points() { &FETCH_COMPUTE } else { &FETCH_RASTER_POINTS_COMPUTE };
+        let lines = Program::compute(&FETCH_LINES_COMPUTE, Domain::PixelsOfLines);
+        let triangles = Program::compute(&FETCH_TRIANGLES_COMPUTE, Domain::PixelsOfTriangles);
         let kinds = variant.primitives;
-        let surfels = std::iter::once(Program::compute(surfels, Over::PixelsOfSurfels));
+        let surfels = std::iter::once(Program::compute(surfels, Domain::PixelsOfSurfels));
         surfels.chain(kinds.lines.then_some(lines)).chain(kinds.triangles.then_some(triangles)).collect()
     }),
     commands: Commands::Dispatches,
 };
 
-/// What is done instead in a frame without scenes.
+/// Clears level 0 in frames without scenes.
 pub static EMPTY: Pass = Pass {
     name: "fetch",
     reads: &[],

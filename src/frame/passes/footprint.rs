@@ -1,19 +1,20 @@
 //! Footprint: surfels → splats, culled and counted (zwicker2004 §4; `footprint.glsl`).
 
-use crate::frame::pass::{Commands, Over, Pass, Program, Programs};
+use crate::frame::pass::{Commands, Domain, Pass, Program, Programs};
 use crate::frame::resource::Resource::{Attributes, Boxes, Counts, ScreenClips, Splats};
 use crate::frame::variant::SceneVariant;
 use crate::vk::shaders::{FOOTPRINT_COMPUTE, FOOTPRINT_TILES_COMPUTE, constant};
 
-/// An invocation a surfel; for tiles, whose lists of splats have no gaps, an invocation for each that there is room for.
+/// One invocation per surfel; on the tile path, whose lists have no gaps, one per surfel of the capacity.
 fn footprint(variant: &SceneVariant) -> Program {
-    match variant.frame.is_tiled() {
-        true => Program::compute(&FOOTPRINT_TILES_COMPUTE, Over::Slots),
-        false => Program::compute(&FOOTPRINT_COMPUTE, Over::Surfels),
+    if variant.frame.is_tiled() {
+        Program::compute(&FOOTPRINT_TILES_COMPUTE, Domain::SurfelSlots)
+    } else {
+        Program::compute(&FOOTPRINT_COMPUTE, Domain::Surfels)
     }
 }
 
-/// Surfels of each scene → its splats, and their counts.
+/// Surfels of each scene → its splats and counters.
 pub static FOOTPRINT: Pass = Pass {
     name: "footprint",
     reads: &[],
@@ -23,8 +24,7 @@ pub static FOOTPRINT: Pass = Pass {
     commands: Commands::Dispatches,
 };
 
-/// The same of discs that are moved away by ε along the camera's axis, which visibility wants where ε is measured along that; they are not
-/// counted.
+/// Footprints of discs moved by ε along the camera's axis, for visibility; not counted.
 pub static MOVED: Pass = Pass {
     name: "footprint",
     reads: &[],

@@ -1,7 +1,7 @@
-//! One file a pass, beside the shader of the same name: what the pass reads and writes, its shaders, what it is computed over or draws to.
+//! One file per pass, next to the shader of the same name: resources, shaders, and domain or attachments.
 //!
-//! Visibility, attribute, nearest and normalize come in two kinds, one for each [`crate::Rasterizer`]; so does what project does of surfels.
-//! What is drawn is drawn in subpasses of a host, too ([`crate::embed::native`]).
+//! Visibility, attribute, nearest and normalize have a compute and a raster pass, chosen by [`crate::Rasterizer`]; so has project for
+//! surfels. Raster passes also run in subpasses of a host ([`crate::embed::native`]).
 
 pub mod attribute;
 pub mod boxes;
@@ -18,17 +18,17 @@ pub mod shade;
 pub mod surface;
 pub mod visibility;
 
-use crate::frame::pass::{Over, Program};
+use crate::frame::pass::{Domain, Program};
 use crate::frame::variant::Variant;
 use crate::vk::shaders::Module;
 
-/// Id of the specialization constant that is the size of the workgroups of passes over tiles: LANES of `lib/workgroup.glsl`.
+/// Specialization constant id of the workgroup size of tile passes: LANES of `lib/workgroup.glsl`.
 const LANES: u32 = 44;
 
-/// The program of a pass over tiles, whose teams pass values on by shared memory or, the second, by subgroups.
+/// Program of a tile pass: one module exchanges values through shared memory, the other by subgroup shuffles.
 fn tiles(variant: &Variant, [shared, subgroups]: [&'static Module; 2]) -> Vec<Program> {
-    let module = if variant.team.subgroups { subgroups } else { shared };
-    vec![Program::compute(module, Over::Tiles).with(LANES, variant.team.lanes)]
+    let module = if variant.workgroup.subgroups { subgroups } else { shared };
+    vec![Program::compute(module, Domain::Tiles).with(LANES, variant.workgroup.lanes)]
 }
 
 #[cfg(test)]
@@ -45,9 +45,9 @@ mod tests {
     use crate::settings::splatting::Visibility;
     use crate::settings::{Alpha, Outputs, Settings};
 
-    /// The passes of every method by every path, of frames that have scenes.
+    /// The passes of all methods on all paths, in frames with scenes.
     fn all() -> Vec<&'static Pass> {
-        let paths = [Path::Computed, Path::Drawn, Path::Subpasses { seed: true }];
+        let paths = [Path::Compute, Path::Raster, Path::Subpasses { seed: true }];
         let mut all: Vec<&'static Pass> = Vec::new();
         for (variant, method) in
             variants().iter().flat_map(|variant| Method::ALL.map(|method| (variant, method)))
@@ -83,7 +83,7 @@ mod tests {
         Resource::Coverage,
         Resource::Nearest,
         Resource::NearestDepth,
-        Resource::NearestNumber,
+        Resource::NearestId,
         Resource::Pulled,
         Resource::Pushed,
         Resource::Image,
@@ -94,7 +94,7 @@ mod tests {
         Resource::HostDepth,
     ];
 
-    /// Frames in which passes have all that they may have, and such in which they have as little as they can.
+    /// Variants with all optional features, and with none.
     fn variants() -> Vec<SceneVariant> {
         let mut list = Vec::new();
         for rich in [false, true] {
@@ -120,7 +120,7 @@ mod tests {
                     let options = RenderOptions { count: rich, outputs, ..Default::default() };
                     let frame = Variant::new(&[streams], true, &settings, &options, rasterizer);
                     list.push(SceneVariant::new(frame, streams, rich));
-                    list.push(SceneVariant::new(frame.crowded(true), streams, rich));
+                    list.push(SceneVariant::new(frame.with_slices(true), streams, rich));
                 }
             }
         }
@@ -138,27 +138,31 @@ mod tests {
     #[test]
     fn passes_declare_what_their_shaders_read_and_write() {
         for pass in all() {
-            let mut seen = Vec::new();
+            let mut bindings = Vec::new();
             for program in variants().iter().flat_map(|variant| programs(pass, variant)) {
                 for (declared, writes) in program.modules().iter().flat_map(|module| module.resources) {
-                    let known = RESOURCES.iter().find(|resource| resource.is_seen_as(declared));
-                    // Moved discs are not counted: a constant takes that away.
+                    let known = RESOURCES.iter().find(|resource| resource.is_bound_as(declared));
+                    // Moved discs are not counted: a constant disables it.
                     let uncounted = std::ptr::eq(pass, &raw const footprint::MOVED);
                     let known = known.filter(|known| !(uncounted && **known == Resource::Counts));
-                    seen.extend(known.map(|resource| (*resource, *writes)));
+                    bindings.extend(known.map(|resource| (*resource, *writes)));
                 }
             }
             if matches!(pass.commands, Commands::Steps(_)) {
                 continue;
             }
-            for (resource, writes) in &seen {
+            for (resource, writes) in &bindings {
                 let list = if *writes { pass.writes } else { pass.reads };
                 let name = pass.name;
                 assert!(list.contains(resource), "{name} does not declare {resource:?}, written: {writes}");
             }
             for resource in pass.reads.iter().chain(pass.writes) {
-                let there = seen.iter().any(|(seen, _)| seen == resource);
-                assert!(there, "{} declares {resource:?}, which none of its shaders sees", pass.name);
+                let is_declared = bindings.iter().any(|(declared, _)| declared == resource);
+                assert!(
+                    is_declared,
+                    "{} declares {resource:?}, which none of its shaders declares",
+                    pass.name
+                );
             }
             assert!(pass.clears.iter().all(|cleared| pass.writes.contains(cleared)), "{}", pass.name);
         }

@@ -1,7 +1,7 @@
-//! Nearest: splats → the nearest one of each pixel, alone (zwicker2004 table 1; botsch2003 §3.2; `nearest.glsl`).
+//! Nearest: splats → the nearest one of each pixel, unblended (zwicker2004 table 1; botsch2003 §3.2; `nearest.glsl`).
 
 use super::tiles;
-use crate::frame::pass::{Commands, Over, Pass, Program, Programs, Start, Targets};
+use crate::frame::pass::{Commands, Domain, DrawTargets, InitialContents, Pass, Program, Programs};
 use crate::frame::resource::Resource::{
     Attributes, Boxes, Coverage, Depth, Image, IncompleteFrame, Normal, ScreenClips, Splats, Sums0, Sums1,
     Visibility,
@@ -13,8 +13,8 @@ use crate::vk::shaders::{
 };
 use crate::vk::{Blend, DepthTest, Topology};
 
-/// A workgroup a tile, which writes the picture.
-pub static COMPUTED: Pass = Pass {
+/// One workgroup per tile; writes the picture.
+pub static COMPUTE: Pass = Pass {
     name: "nearest",
     reads: &[Splats, Boxes, Attributes, ScreenClips],
     writes: &[Visibility, Sums0, Coverage, Image, Normal, Depth, IncompleteFrame],
@@ -29,8 +29,8 @@ pub static COMPUTED: Pass = Pass {
     commands: Commands::Dispatches,
 };
 
-/// Draws with a depth test, which leave what the splat is.
-pub static DRAWN: Pass = Pass {
+/// Splat triangles with a depth test; write the splat's attributes as sums.
+pub static RASTER: Pass = Pass {
     name: "nearest",
     reads: &[Splats, ScreenClips],
     writes: &[Coverage],
@@ -41,11 +41,11 @@ pub static DRAWN: Pass = Pass {
             (false, true) => [&NEAREST_CLIP_LINES_VERTEX, &NEAREST_CLIP_LINES_FRAGMENT],
             (false, false) => [&NEAREST_VERTEX, &NEAREST_FRAGMENT],
         };
-        vec![Program::draw(modules, Over::SplatTriangles)]
+        vec![Program::draw(modules, Domain::SplatTriangles)]
     }),
-    commands: Commands::Draws(Targets {
-        colours: &[(Sums0, Start::Cleared), (Sums1, Start::Cleared)],
-        depth: Some((Visibility, Start::Cleared)),
+    commands: Commands::Draws(DrawTargets {
+        colours: &[(Sums0, InitialContents::Cleared), (Sums1, InitialContents::Cleared)],
+        depth: Some((Visibility, InitialContents::Cleared)),
         topology: Topology::Triangles,
         test: DepthTest::Nearest,
         blend: Blend::Replace,

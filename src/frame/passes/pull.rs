@@ -1,22 +1,22 @@
 //! Pull: a level of the pulled pyramid → the next coarser one (marroquim2008 §3.2; `pull.glsl`).
 
-use crate::frame::pass::{Commands, Over, Pass, Program, Programs, Steps};
+use crate::frame::pass::{Commands, Domain, Pass, Program, Programs, StepContext};
 use crate::frame::resource::Resource::Pulled;
 use crate::vk::Recorder;
 use crate::vk::shaders::PULL_COMPUTE;
 
-/// Level 0 of what is pulled → all others.
+/// Level 0 of the pulled pyramid → all others.
 pub static PULL: Pass = Pass {
     name: "pull",
     reads: &[],
     writes: &[Pulled],
     clears: &[],
-    programs: Programs::OfFrame(|_| vec![Program::compute(&PULL_COMPUTE, Over::Level)]),
+    programs: Programs::OfFrame(|_| vec![Program::compute(&PULL_COMPUTE, Domain::Level)]),
     commands: Commands::Steps(record),
 };
 
-fn record(steps: &Steps<'_>, rec: &mut Recorder<'_>) {
-    let Steps { pipeline: Some(pipeline), frame, .. } = steps else { return };
+fn record(steps: &StepContext<'_>, rec: &mut Recorder<'_>) {
+    let StepContext { pipeline: Some(pipeline), frame, .. } = steps else { return };
     let Some(pyramids) = &frame.targets.pyramids else { return };
     for level in 1..pyramids.levels() {
         let pair = pyramids.storage.pull(level);

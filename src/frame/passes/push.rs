@@ -1,22 +1,22 @@
 //! Push: the pulled pyramid → the final one, coarse to fine (marroquim2008 §3.3; `push.glsl`).
 
-use crate::frame::pass::{Commands, Over, Pass, Program, Programs, Steps};
+use crate::frame::pass::{Commands, Domain, Pass, Program, Programs, StepContext};
 use crate::frame::resource::Resource::{Pulled, Pushed};
 use crate::vk::Recorder;
 use crate::vk::shaders::PUSH_COMPUTE;
 
-/// What is pulled of all levels → what is pushed.
+/// All pulled levels → pushed levels.
 pub static PUSH: Pass = Pass {
     name: "push",
     reads: &[Pulled],
     writes: &[Pushed],
     clears: &[],
-    programs: Programs::OfFrame(|_| vec![Program::compute(&PUSH_COMPUTE, Over::Level)]),
+    programs: Programs::OfFrame(|_| vec![Program::compute(&PUSH_COMPUTE, Domain::Level)]),
     commands: Commands::Steps(record),
 };
 
-fn record(steps: &Steps<'_>, rec: &mut Recorder<'_>) {
-    let Steps { pipeline: Some(pipeline), frame, .. } = steps else { return };
+fn record(steps: &StepContext<'_>, rec: &mut Recorder<'_>) {
+    let StepContext { pipeline: Some(pipeline), frame, .. } = steps else { return };
     let Some(pyramids) = &frame.targets.pyramids else { return };
     for level in (0..pyramids.levels()).rev() {
         let pair = pyramids.storage.push(level);

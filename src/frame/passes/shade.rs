@@ -1,12 +1,12 @@
 //! Shade: the final level 0 → picture, normal, depth (marroquim2008 §3.4; `shade.glsl`).
 
-use crate::frame::pass::{Commands, Over, Pass, Program, Programs};
+use crate::frame::pass::{Commands, Domain, Pass, Program, Programs};
 use crate::frame::resource::Resource::{Depth, Id, Image, Normal, Pushed};
 use crate::vk::shaders::{
     SHADE_COMPUTE, SHADE_LOOKUPS_COMPUTE, SHADE_LOOKUPS_STORE_IDS_COMPUTE, SHADE_STORE_IDS_COMPUTE,
 };
 
-/// An invocation a pixel, which looks colours up in a texture, or materials by the numbers of points, where there are such.
+/// One invocation per pixel; with a texture or materials, the variant that looks these up.
 pub static SHADE: Pass = Pass {
     name: "shade",
     reads: &[Pushed],
@@ -19,7 +19,7 @@ pub static SHADE: Pass = Pass {
             (true, false) => &SHADE_LOOKUPS_COMPUTE,
             (true, true) => &SHADE_LOOKUPS_STORE_IDS_COMPUTE,
         };
-        vec![Program::compute(module, Over::Pixels)]
+        vec![Program::compute(module, Domain::Pixels)]
     }),
     commands: Commands::Dispatches,
 };

@@ -7,7 +7,7 @@ use crate::frame::resource::Resource::{
 };
 use crate::vk::shaders::{SURFACE_COMPUTE, SURFACE_SUBGROUPS_COMPUTE};
 
-/// A workgroup a tile.
+/// One workgroup per tile.
 pub static SURFACE: Pass = Pass {
     name: "surface",
     reads: &[Splats, Boxes, Attributes, ScreenClips],

@@ -1,7 +1,7 @@
 //! Visibility: splats → depth of the nearest surface, moved back by ε (zwicker2004 §6, first pass; `visibility.glsl`).
 
 use super::tiles;
-use crate::frame::pass::{Commands, Over, Pass, Program, Programs, Start, Targets};
+use crate::frame::pass::{Commands, Domain, DrawTargets, InitialContents, Pass, Program, Programs};
 use crate::frame::resource::Resource::{Boxes, Coverage, IncompleteFrame, ScreenClips, Splats, Visibility};
 use crate::vk::shaders::{
     VISIBILITY_CLIP_LINES_FRAGMENT, VISIBILITY_CLIP_LINES_VERTEX, VISIBILITY_COMPUTE,
@@ -10,8 +10,8 @@ use crate::vk::shaders::{
 };
 use crate::vk::{Blend, DepthTest, Topology};
 
-/// A workgroup a tile.
-pub static COMPUTED: Pass = Pass {
+/// One workgroup per tile.
+pub static COMPUTE: Pass = Pass {
     name: "visibility",
     reads: &[Splats, Boxes, ScreenClips],
     writes: &[Visibility, Coverage, IncompleteFrame],
@@ -22,8 +22,8 @@ pub static COMPUTED: Pass = Pass {
     commands: Commands::Dispatches,
 };
 
-/// Draws with a depth test.
-pub static DRAWN: Pass = Pass {
+/// Splat triangles with a depth test.
+pub static RASTER: Pass = Pass {
     name: "visibility",
     reads: &[Splats, ScreenClips],
     writes: &[Coverage],
@@ -34,11 +34,11 @@ pub static DRAWN: Pass = Pass {
             (false, true) => [&VISIBILITY_CLIP_LINES_VERTEX, &VISIBILITY_CLIP_LINES_FRAGMENT],
             (false, false) => [&VISIBILITY_VERTEX, &VISIBILITY_FRAGMENT],
         };
-        vec![Program::draw(modules, Over::SplatTriangles)]
+        vec![Program::draw(modules, Domain::SplatTriangles)]
     }),
-    commands: Commands::Draws(Targets {
+    commands: Commands::Draws(DrawTargets {
         colours: &[],
-        depth: Some((Visibility, Start::Cleared)),
+        depth: Some((Visibility, InitialContents::Cleared)),
         topology: Topology::Triangles,
         test: DepthTest::Nearest,
         blend: Blend::Replace,
