@@ -24,7 +24,6 @@ layout(push_constant) uniform Level {
 void main() {
     uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     if (i >= level.count) return;
-    Box all_of = EMPTY_BOX;
     uvec4 bounds = uvec4(0xffff, 0xffff, 0, 0);
     uint nearest = 0;
     for (uint k = 0; k < FAN_OUT; k++) {
