@@ -14,13 +14,13 @@ layout(location = 11) flat out mat2x4 fine;
 layout(location = 10) flat out vec4 solid_whitening;
 #endif
 
-// Margin of a triangle, px, above the error of vertices that the rasterizer snaps to at most 1/16 px.
+// Margin of a triangle's edges, px: more than rasterizers, which snap vertices to a grid of 1/16 px or finer, can move them.
 const float EDGE_MARGIN = 0.125;
 // Largest extent of a triangle, px: a larger one is replaced by a triangle over the viewport, whose edges stay exact.
 const float LARGEST_TRIANGLE = 8192.0;
 
 // Corner, px, of a triangle around the part inside the viewport of the ellipse with these semi-axes, px. A triangle inside the viewport is
-// not clipped; CPU rasterizers take a slower path for all triangles of a draw if one is.
+// not clipped; CPU rasterizers process all triangles of a draw differently if one is.
 vec2 corner_about(vec2 centre, vec2 axis, vec2 reach, int corner) {
     vec2 major = reach.x * axis, minor = reach.y * vec2(-axis.y, axis.x);
     vec2 corners[3] = vec2[](centre + 2.0 * minor, centre - 1.7320508 * major - minor, centre + 1.7320508 * major - minor);

@@ -9,7 +9,7 @@ uint least_distance() {
 }
 
 const uint NEAR_PLANE_DEPTH = 0x3f800000; // 1.0
-const uint LEAST_DEPTH = 0x00800000;   // the least float that no device flushes to 0
+const uint LEAST_DEPTH = 0x00800000;      // the least float that no device flushes to 0
 
 float depth_of(float distance) {
     uint beyond = max(floatBitsToUint(distance), least_distance()) - least_distance();

@@ -17,7 +17,7 @@ layout(constant_id = 58) const uint COLOUR_STRIDE = 1;
 layout(constant_id = 59) const uint ELLIPSE_OFFSET = 0;
 layout(constant_id = 60) const uint ELLIPSE_STRIDE = 4;
 layout(constant_id = 61) const bool UNCHECKED = false;   // surfels are not validated
-layout(constant_id = 62) const uint STORED_COLOURS = 0;    // colour format of the scene, also if the frame reads no colours
+layout(constant_id = 62) const uint STORED_COLOURS = 0;  // colour format of the scene, also if the frame reads no colours
 
 layout(set = 0, binding = 2, std430) readonly buffer Positions { float positions[]; };
 layout(set = 0, binding = 3, std430) readonly buffer Normals { uint normals[]; };
