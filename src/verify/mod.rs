@@ -3,6 +3,8 @@
 
 #[cfg(feature = "bench")]
 pub mod baseline;
+#[cfg(feature = "scenes")]
+mod hierarchy;
 #[cfg(feature = "metrics")]
 pub mod metrics;
 #[cfg(feature = "reference")]

@@ -6,7 +6,6 @@
 pub mod bumpy_sphere;
 mod catalogue;
 mod edges;
-mod hierarchy;
 mod models;
 mod primitives;
 mod query;

@@ -1,9 +1,9 @@
 //! Surfaces: pieces of shapes with albedos, sampled and traced by one definition.
 
-use super::hierarchy::{Hierarchy, union};
 use super::shapes::{Ray, Shape};
 use super::texture::Texture;
 use crate::geometry::Bounds;
+use crate::verify::hierarchy::{Hierarchy, union};
 use glam::DVec3;
 
 /// Intersection of a ray with a surface.
@@ -97,7 +97,7 @@ impl Surface for Assembly {
         let skipped = ((self.bounds.centre() - origin).dot(direction) - 1.001 * self.bounds.radius).max(0.0);
         let ray = Ray { origin: origin + skipped * direction, direction };
         let mut found = None;
-        self.hierarchy.visit(&ray, f64::INFINITY, |index, limit| {
+        self.hierarchy.visit([ray.origin, ray.direction], f64::INFINITY, |index, limit| {
             let piece = &self.pieces[index as usize];
             match piece.shape.trace(&ray, limit) {
                 Some((t, point)) => {

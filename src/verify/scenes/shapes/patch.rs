@@ -13,8 +13,8 @@
 //! small relative to the surface's features.
 
 use super::{Ray, Sample, Shape, SurfacePoint};
+use crate::verify::hierarchy::{Hierarchy, union};
 use crate::verify::scenes::CentrelinePoint;
-use crate::verify::scenes::hierarchy::{Hierarchy, union};
 use glam::{DMat2, DVec2, DVec3};
 use rayon::prelude::*;
 
@@ -232,7 +232,7 @@ impl<P: Parametric> Shape for Patch<P> {
     fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, SurfacePoint)> {
         let planes = RayPlanes::new(*ray);
         let mut found = None;
-        self.hierarchy.visit(ray, limit, |cell, limit| {
+        self.hierarchy.visit([ray.origin, ray.direction], limit, |cell, limit| {
             match self.meet(&planes, &self.cells[cell as usize], limit) {
                 Some(hit) => {
                     found = Some(hit);

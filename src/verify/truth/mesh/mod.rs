@@ -1,15 +1,14 @@
 //! Triangle meshes as exact surfaces.
 
-mod hierarchy;
 mod normals;
 pub(super) mod triangle;
 
 use super::traceable::{Hit, Traceable};
 use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Cloud, Colours};
+use crate::verify::hierarchy::{Hierarchy, union};
 use crate::verify::reference::linear;
 use glam::DVec3;
-use hierarchy::Hierarchy;
 use rayon::prelude::*;
 use xxhash_rust::xxh3::Xxh3;
 
@@ -44,7 +43,7 @@ impl Mesh {
                 [a.min(b).min(c), a.max(b).max(c)]
             })
             .collect();
-        let whole = boxes.iter().copied().reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+        let whole = boxes.iter().copied().reduce(union);
         let Some([min, max]) = whole else {
             return Err(Error::input(name, "no triangles: give a mesh, or a built-in scene"));
         };
@@ -100,7 +99,8 @@ impl Traceable for Mesh {
         let direction = direction.try_normalize().filter(|_| origin.is_finite() && length.is_finite())?;
         let ray = triangle::Ray::new(origin, direction)?;
         let mut found = None;
-        self.hierarchy.visit(origin, direction, |index, limit| {
+        self.hierarchy.visit([origin, direction], f64::INFINITY, |index, limit| {
+            let index = index as usize;
             let corners = self.triangles[index].map(|corner| self.corners[corner as usize]);
             match ray.meet(corners).filter(|(t, _)| *t < limit) {
                 Some((t, weights)) => {

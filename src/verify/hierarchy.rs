@@ -1,6 +1,5 @@
 //! Bounding volume hierarchy.
 
-use super::shapes::Ray;
 use glam::DVec3;
 
 /// A bounding volume hierarchy, traversed from near to far.
@@ -19,7 +18,7 @@ enum Content {
     Children([u32; 2]),
 }
 
-/// Relative widening of boxes against rounding, of their distance from the origin.
+/// Relative widening of boxes against rounding, of the largest coordinate.
 const MARGIN: f64 = 1e-12;
 
 /// The box around two boxes.
@@ -31,17 +30,17 @@ impl Hierarchy {
     /// The hierarchy of items with these boxes; items are identified by their indices.
     pub fn new(boxes: &[[DVec3; 2]]) -> Self {
         let mut hierarchy = Self { nodes: Vec::with_capacity(2 * boxes.len()) };
+        let largest = boxes.iter().flatten().map(|corner| corner.abs().max_element()).fold(0.0, f64::max);
         let mut items: Vec<u32> = (0..boxes.len() as u32).collect();
         if !items.is_empty() {
-            hierarchy.build(boxes, &mut items);
+            hierarchy.build(boxes, MARGIN * largest, &mut items);
         }
         hierarchy
     }
 
     /// Adds the node of `items`, split at the median along the longest side, and returns its index.
-    fn build(&mut self, boxes: &[[DVec3; 2]], items: &mut [u32]) -> u32 {
+    fn build(&mut self, boxes: &[[DVec3; 2]], margin: f64, items: &mut [u32]) -> u32 {
         let all = items.iter().map(|i| boxes[*i as usize]).reduce(union).unwrap_or_default();
-        let margin = MARGIN * (all[0].abs().max(all[1].abs()).max_element());
         let index = self.nodes.len() as u32;
         self.nodes
             .push(Node { corners: [all[0] - margin, all[1] + margin], content: Content::Item(items[0]) });
@@ -52,18 +51,22 @@ impl Hierarchy {
             let half = items.len() / 2;
             items.select_nth_unstable_by(half, |a, b| middle(a).total_cmp(&middle(b)));
             let (low, high) = items.split_at_mut(half);
-            let children = [self.build(boxes, low), self.build(boxes, high)];
+            let children = [self.build(boxes, margin, low), self.build(boxes, margin, high)];
             self.nodes[index as usize].content = Content::Children(children);
         }
         index
     }
 
-    /// Calls `visit` with every item whose box the ray enters before `limit`, and the current limit; `visit` returns
-    /// the new one.
-    pub fn visit(&self, ray: &Ray, limit: f64, mut visit: impl FnMut(u32, f64) -> f64) {
-        let mut limit = limit;
-        let inverse = ray.direction.recip();
-        let enter = |node: u32| enter(self.nodes[node as usize].corners, ray.origin, inverse);
+    /// Calls `visit` with every item whose box a ray enters before `limit`, and the current limit; `visit` returns the
+    /// new one. Limits are in lengths of the direction.
+    pub fn visit(
+        &self,
+        [origin, direction]: [DVec3; 2],
+        mut limit: f64,
+        mut visit: impl FnMut(u32, f64) -> f64,
+    ) {
+        let inverse = direction.recip();
+        let enter = |node: u32| enter(self.nodes[node as usize].corners, origin, inverse);
         let mut todo = Vec::with_capacity(64);
         todo.extend(self.nodes.first().and_then(|_| enter(0)).map(|t| (0, t)));
         while let Some((node, t)) = todo.pop() {
@@ -108,20 +111,20 @@ mod tests {
         let corner = |i: u32| DVec3::new(f64::from(i % 7), f64::from(i / 7 % 7), f64::from(i / 49));
         let boxes: Vec<_> = (0..343).map(|i| [corner(i), corner(i) + 0.5]).collect();
         let hierarchy = Hierarchy::new(&boxes);
-        let ray = Ray { origin: DVec3::new(-1.0, 2.25, 3.25), direction: DVec3::X };
+        let ray = [DVec3::new(-1.0, 2.25, 3.25), DVec3::X];
         let mut visited = Vec::new();
-        hierarchy.visit(&ray, f64::INFINITY, |item, limit| {
+        hierarchy.visit(ray, f64::INFINITY, |item, limit| {
             visited.push(item);
             limit
         });
         let expected: Vec<u32> = (0..7).map(|x| x + 7 * 2 + 49 * 3).collect();
         assert_eq!(visited, expected, "near to far");
         let mut visited = Vec::new();
-        hierarchy.visit(&ray, 3.2, |item, limit| {
+        hierarchy.visit(ray, 3.2, |item, limit| {
             visited.push(item);
             limit
         });
         assert_eq!(visited, expected[..3]);
-        Hierarchy::new(&[]).visit(&ray, 1.0, |_, _| panic!("there is no box"));
+        Hierarchy::new(&[]).visit(ray, 1.0, |_, _| panic!("there is no box"));
     }
 }
