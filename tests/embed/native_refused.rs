@@ -4,7 +4,7 @@ use crate::FOUR;
 use crate::fixture::{SIZE, assert_silent, camera, open, rising, surfels, upload};
 use crate::host::memory::Counted;
 use crate::host::native::{Kind, Native};
-use crate::native::{Drawn, PLAIN, method};
+use crate::native_rig::{Drawn, PLAIN, method};
 use crate::support::sampling::{self, Random};
 use ash::vk;
 use std::sync::atomic::Ordering;
