@@ -1,9 +1,9 @@
 //! Barriers of frames: none waits for all earlier work of the host.
 
+use crate::compare::settings;
 use crate::fixture::{SIZE, assert_silent, camera, open, surfels, upload};
 use crate::host::Host;
 use crate::host::frame::{Frame, Kind, Way};
-use crate::live::settings;
 use crate::{FLOATS, ONE};
 use ash::vk;
 use std::ffi::{CStr, c_void};

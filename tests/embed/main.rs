@@ -2,11 +2,14 @@
 #![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
 
 mod barriers;
+mod buffers;
+mod compare;
 mod composite;
 mod fixture;
 #[path = "../../tools/hosts/host/mod.rs"]
 mod host;
 mod hosts;
+mod inputs;
 mod instances;
 mod live;
 mod native;

@@ -1,8 +1,9 @@
 //! Updates of uploaded surfels: visible in later frames, and not in earlier ones.
 
+use crate::compare::{ALONE, NARROW, alone, differing, refused, settings};
 use crate::fixture::{assert_silent, open, upload};
 use crate::host::frame::Frame;
-use crate::live::{ALONE, NARROW, alone, differing, ellipses, moved, refused, settings, sphere, spoil};
+use crate::inputs::{ellipses, moved, sphere, spoil};
 use crate::rig::{KIND, Rig, SIZE};
 use crate::support::sampling::{Random, narrow, paint_linear, paint_srgb};
 use glam::Vec3;

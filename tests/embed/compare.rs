@@ -1,0 +1,75 @@
+//! Comparison of frames of changing scenes.
+
+use crate::rig::{Rendered, SIZE, view};
+use std::sync::Arc;
+use surfel::settings::methods::Method;
+use surfel::settings::splatting::Visibility;
+use surfel::vk::{Device, DeviceLimits};
+use surfel::{Picture, Rasterizer, RenderOptions, Scene, Settings, SplatCounts};
+
+/// Limits so low that a scene of 20,000 surfels has several chunks, with a coarser alignment than a vertex.
+pub const NARROW: DeviceLimits = DeviceLimits {
+    max_storage_buffer_range: Some(512 << 10),
+    blend_float32: None,
+    subgroup_size: None,
+    max_texels: None,
+    int64_atomics: None,
+    fragment_writes: None,
+    independent_blend: None,
+    dynamic_rendering: None,
+    timestamps: None,
+    storage_buffer_alignment: Some(256),
+    max_storage_buffers: None,
+    max_image_side: None,
+    memory: None,
+};
+
+pub fn settings(method: Method) -> Settings {
+    Settings { background: None, ..method.settings() }
+}
+
+/// Tolerance of two frames: atomic sums have an arbitrary order.
+pub fn most(settings: &Settings, rasterizer: Rasterizer) -> f32 {
+    let blends = settings.pull_push.is_none() && settings.splatting.visibility != Visibility::Nearest;
+    if blends && rasterizer == Rasterizer::Compute { 2e-5 } else { 0.0 }
+}
+
+/// Number of pixels in which two frames differ by more than `most`.
+pub fn differing((colours, depths): &Rendered, (others, other_depths): &Rendered, most: f32) -> usize {
+    assert_eq!((colours.len(), depths.len()), (others.len(), other_depths.len()));
+    let near = |a: f32, b: f32| (a - b).abs() <= most;
+    let same = |i: &usize| {
+        colours[*i].iter().zip(&others[*i]).all(|(a, b)| near(*a, *b)) && near(depths[*i], other_depths[*i])
+    };
+    (0..colours.len()).filter(|i| !same(i)).count()
+}
+
+pub fn covered((colours, _): &Rendered) -> usize {
+    colours.iter().filter(|colour| colour[3] > 0.0).count()
+}
+
+/// The engine's frame of a scene, with counts.
+pub fn alone(
+    device: &Arc<Device>,
+    scene: &Scene,
+    name: &str,
+    rasterizer: Rasterizer,
+) -> (Picture, SplatCounts) {
+    let options =
+        RenderOptions { size: SIZE, rasterizer: Some(rasterizer), count: true, ..Default::default() };
+    let mut renderer = surfel::Renderer::new(device, options).unwrap();
+    let settings = settings(Method::named(name).unwrap());
+    let (picture, report) = renderer.render_picture(scene, &view().camera, &settings).unwrap();
+    (picture, report.counts.unwrap())
+}
+
+pub const ALONE: [(&str, Rasterizer); 3] = [
+    ("sprites-unfiltered", Rasterizer::Draw),
+    ("pull-push", Rasterizer::Draw),
+    ("pull-push", Rasterizer::Compute),
+];
+
+pub fn refused<T>(made: surfel::Result<T>, expected: &str) {
+    let text = made.err().map(|error| error.to_string()).unwrap_or_default();
+    assert!(text.contains(expected), "`{expected}` is not in `{text}`");
+}
