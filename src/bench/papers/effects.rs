@@ -1,15 +1,11 @@
 //! Effects that the papers' figures show: scenes in which one way to splat fails and another does not, and the metrics
 //! that distinguish them.
 
+mod plans;
+
 use super::details::{FACETS, GAPS, LEAKS, SHARPNESS, UNEVENNESS};
-use super::method;
-use crate::bench::plan::{Measurements, Plan};
-use crate::bench::record::{Experiment, Run};
-use crate::bench::suites::{Suite, plan};
-use crate::settings::methods::Method;
-use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Splatting, Visibility};
-use crate::settings::{Settings, Shading};
-use crate::verify::scenes::Viewpoint;
+use crate::bench::plan::Plan;
+use crate::bench::record::Run;
 
 /// An effect of a figure, with the runs that are compared.
 pub struct Effect {
@@ -88,7 +84,7 @@ pub const ALL: [Effect; 18] = [
                 towards the middle of the picture, and hide what lies behind beside the silhouette.",
         metrics: &[(GAPS, "px of gaps"), ("rmse", "RMSE")],
         expected: &[more(GAPS, 0, 1, Difference::Plus(40.0)), more("rmse", 0, 1, Difference::Times(1.1))],
-        plans: axis_offset,
+        plans: plans::axis_offset,
     },
     Effect {
         name: "thickening",
@@ -98,7 +94,7 @@ pub const ALL: [Effect; 18] = [
                 disc's slope does not.",
         metrics: &[("bloat", "px of bloat"), ("rmse", "RMSE")],
         expected: &[more("bloat", 0, 1, Difference::Times(2.0)), more("rmse", 0, 1, Difference::Times(1.1))],
-        plans: thickening,
+        plans: plans::thickening,
     },
     Effect {
         name: "perspective-holes",
@@ -107,7 +103,7 @@ pub const ALL: [Effect; 18] = [
         description: "A plane of large discs that just cover it, at a grazing angle, at the edge of a wide field of view; then by every other method.",
         metrics: &[(GAPS, "px of gaps"), ("rmse", "RMSE")],
         expected: &[more(GAPS, 1, 0, Difference::Plus(50.0)), more(GAPS, 3, 0, Difference::Plus(150.0))],
-        plans: perspective_holes,
+        plans: plans::perspective_holes,
     },
     Effect {
         name: "moire",
@@ -121,7 +117,7 @@ pub const ALL: [Effect; 18] = [
             more("rmse", 2, 3, Difference::Times(1.3)),
             more("flicker", 2, 3, Difference::Times(1.2)),
         ],
-        plans: moire,
+        plans: plans::moire,
     },
     Effect {
         name: "kernel-blur",
@@ -135,7 +131,7 @@ pub const ALL: [Effect; 18] = [
             more(SHARPNESS, 3, 4, Difference::Times(1.2)),
             more(SHARPNESS, 1, 4, Difference::Times(1.1)),
         ],
-        plans: kernel_blur,
+        plans: plans::kernel_blur,
     },
     Effect {
         name: "kernel-facets",
@@ -144,7 +140,7 @@ pub const ALL: [Effect; 18] = [
         description: "A sphere lit pixel by pixel, of few points. Where a kernel is narrow one splat counts, and normals jump from one to the next.",
         metrics: &[(FACETS, "facets"), ("rmse", "RMSE")],
         expected: &[more(FACETS, 1, 0, Difference::Times(1.05)), more(FACETS, 2, 0, Difference::Times(1.2))],
-        plans: kernel_facets,
+        plans: plans::kernel_facets,
     },
     Effect {
         name: "clip-lines",
@@ -153,7 +149,7 @@ pub const ALL: [Effect; 18] = [
         description: "A block with convex and concave edges, of few points. Whole discs stand out over its edges.",
         metrics: &[("bloat", "px of bloat"), ("rmse", "RMSE")],
         expected: &[more("bloat", 0, 1, Difference::Times(1.5)), more("rmse", 0, 1, Difference::Times(1.1))],
-        plans: clip_lines,
+        plans: plans::clip_lines,
     },
     Effect {
         name: "overlap",
@@ -163,7 +159,7 @@ pub const ALL: [Effect; 18] = [
                 those that are small. Pictures go from 0 to their own largest number.",
         metrics: &OVERLAP,
         expected: &[more("overlap-mean", 1, 0, Difference::Times(1.2))],
-        plans: overlap,
+        plans: plans::overlap,
     },
     Effect {
         name: "no-normalization",
@@ -176,7 +172,7 @@ pub const ALL: [Effect; 18] = [
             more(UNEVENNESS, 0, 1, Difference::Times(2.0)),
             more(UNEVENNESS, 0, 2, Difference::Plus(0.05)),
         ],
-        plans: no_normalization,
+        plans: plans::no_normalization,
     },
     Effect {
         name: "whole-sizes",
@@ -185,7 +181,7 @@ pub const ALL: [Effect; 18] = [
         description: "Sprites whose width is rounded up to whole pixels. What the rounding saves is among the costs.",
         metrics: &[("bloat", "px of bloat"), ("rmse", "RMSE")],
         expected: &[more("rmse", 0, 1, Difference::Times(1.01))],
-        plans: whole_sizes,
+        plans: plans::whole_sizes,
     },
     Effect {
         name: "layers",
@@ -195,7 +191,7 @@ pub const ALL: [Effect; 18] = [
                 surface; the robust rules use the nearest surface only.",
         metrics: &[(LEAKS, "px of hidden surfaces"), ("rmse", "RMSE")],
         expected: &[more(LEAKS, 0, 1, Difference::Plus(20.0)), more("rmse", 0, 1, Difference::Times(1.1))],
-        plans: layers,
+        plans: plans::layers,
     },
     Effect {
         name: "ribbon",
@@ -205,7 +201,7 @@ pub const ALL: [Effect; 18] = [
                 8 px. Then surfels.",
         metrics: &[("bloat", "px of bloat"), ("rmse", "RMSE")],
         expected: &[more("rmse", 0, 1, Difference::Times(3.0))],
-        plans: |effect| drawn(effect, "scene:ribbon?albedo=plain", 100000),
+        plans: |effect| plans::drawn(effect, "scene:ribbon?albedo=plain", 100000),
     },
     Effect {
         name: "tubes",
@@ -215,7 +211,7 @@ pub const ALL: [Effect; 18] = [
                 axis. Then surfels.",
         metrics: &[("bloat", "px of bloat"), ("rmse", "RMSE")],
         expected: &[more("rmse", 0, 1, Difference::Times(2.0))],
-        plans: |effect| drawn(effect, "scene:helix?segments=128", 100000),
+        plans: |effect| plans::drawn(effect, "scene:helix?segments=128", 100000),
     },
     Effect {
         name: "leaf-and-branch",
@@ -224,7 +220,7 @@ pub const ALL: [Effect; 18] = [
         description: "A tube with six ribbons, of 12 segments each. Then surfels.",
         metrics: &[("bloat", "px of bloat"), ("rmse", "RMSE")],
         expected: &[more("rmse", 0, 1, Difference::Times(1.02))],
-        plans: |effect| drawn(effect, "scene:tree?depth=0&segments=12", 100000),
+        plans: |effect| plans::drawn(effect, "scene:tree?depth=0&segments=12", 100000),
     },
     Effect {
         name: "tree",
@@ -233,7 +229,7 @@ pub const ALL: [Effect; 18] = [
         description: "162 leaves as ribbons and 40 branches as tubes, of 12 segments each. Then surfels.",
         metrics: &[("bloat", "px of bloat"), ("rmse", "RMSE")],
         expected: &[more("rmse", 0, 1, Difference::Times(1.5))],
-        plans: |effect| drawn(effect, "scene:tree?segments=12", 100000),
+        plans: |effect| plans::drawn(effect, "scene:tree?segments=12", 100000),
     },
     Effect {
         name: "ten-trees",
@@ -242,7 +238,7 @@ pub const ALL: [Effect; 18] = [
         description: "The same ten times: about as many lines as pixels covered by them. Then surfels.",
         metrics: &[("bloat", "px of bloat"), ("rmse", "RMSE")],
         expected: &[more("rmse", 0, 1, Difference::Times(1.5))],
-        plans: |effect| drawn(effect, "scene:tree?trees=10&segments=12", 100000),
+        plans: |effect| plans::drawn(effect, "scene:tree?trees=10&segments=12", 100000),
     },
     Effect {
         name: "kinds",
@@ -251,7 +247,7 @@ pub const ALL: [Effect; 18] = [
         description: "A torus of points, a spring and a ribbon of lines, a floor and a box of triangles. Then surfels.",
         metrics: &[("bloat", "px of bloat"), ("rmse", "RMSE")],
         expected: &[more("rmse", 0, 1, Difference::Times(1.2))],
-        plans: |effect| drawn(effect, "scene:mixed?segments=200", 50000),
+        plans: |effect| plans::drawn(effect, "scene:mixed?segments=200", 50000),
     },
     Effect {
         name: "hybrid",
@@ -260,7 +256,7 @@ pub const ALL: [Effect; 18] = [
         description: "A horn, the lower half of which is triangles: their vertices at the seam have radii that blend with the points. Then surfels.",
         metrics: &[("bloat", "px of bloat"), ("rmse", "RMSE")],
         expected: &[more("rmse", 0, 1, Difference::Times(1.1))],
-        plans: |effect| drawn(effect, "scene:hybrid?segments=96", 50000),
+        plans: |effect| plans::drawn(effect, "scene:hybrid?segments=96", 50000),
     },
 ];
 
@@ -274,127 +270,4 @@ impl Effect {
     pub fn plans(&self) -> Vec<Plan> {
         (self.plans)(self)
     }
-
-    /// A run with a square picture of `side` px, showing colours, by the default method.
-    fn plan(&self, scene: &str, points: u64, side: u32) -> Plan {
-        let measurements =
-            Measurements { error: true, details: true, images: true, ..Measurements::default() };
-        let plan = plan(Suite::Papers, Experiment::Effects, scene, points, [side; 2]);
-        Plan { paper_item: self.name.into(), measurements, ..plan }
-    }
-}
-
-/// The plan once per splatting, with its other settings unchanged.
-fn each<const N: usize>(plan: &Plan, splattings: [Splatting; N]) -> Vec<Plan> {
-    let one = |splatting| Settings { splatting, ..plan.settings.clone() };
-    splattings.map(|splatting| Plan { settings: one(splatting), ..plan.clone() }).into()
-}
-
-/// A viewpoint with y up.
-fn view(eye: [f64; 3], target: [f64; 3], fov_y_deg: f64) -> Option<Viewpoint> {
-    Some(Viewpoint { eye, target, up: [0.0, 1.0, 0.0], fov_y_deg })
-}
-
-fn axis_offset(effect: &Effect) -> Vec<Plan> {
-    let mut plan = effect.plan("scene:slabs?slabs=2&gap=0.6&clips=off", 20_000, 192);
-    plan.viewpoint = view([0.3, 3.0, 0.3], [3.2, 0.4, 0.3], 75.0);
-    plan.settings.epsilon = 4.0;
-    let along = |visibility| Splatting { visibility, ..Splatting::default() };
-    each(&plan, [along(Visibility::Axis), along(Visibility::Ray)])
-}
-
-fn thickening(effect: &Effect) -> Vec<Plan> {
-    let ellipses = effect.plan("scene:sphere", 3000, 128).by(&method("sprites-unfiltered"));
-    let shaped = ellipses.settings.splatting;
-    each(&ellipses, [Splatting { footprint: Footprint::Square, ..shaped }, shaped])
-}
-
-/// The affine approximation beside the exact image, then every other method.
-fn perspective_holes(effect: &Effect) -> Vec<Plan> {
-    let mut plan = effect.plan("scene:relief?height=0&sampler=grid", 100, 192);
-    // Grids have discs of 1.5 spacings; half the diagonal between neighbours is 0.71, and samples are slightly
-    // jittered.
-    plan.radius_scale = 0.56;
-    plan.viewpoint = view([-2.0, 0.6, 7.2], [-2.0, 3.0, -2.0], 125.0);
-    let affine = Splatting { footprint: Footprint::Affine, ..Splatting::default() };
-    let mut plans = each(&plan, [Splatting::default(), affine]);
-    plans.extend(Method::SPLATTING[1..].iter().map(|method| plan.by(method)));
-    plans
-}
-
-fn moire(effect: &Effect) -> Vec<Plan> {
-    let mut plan = effect.plan("scene:plane?frequency=2", 300_000, 128);
-    plan.measurements.flicker = true;
-    let screen = Splatting::default();
-    let object = Splatting { footprint: Footprint::Parallelogram, filter: Filter::Object, ..screen };
-    let without = |splatting| Splatting { filter: Filter::None, ..splatting };
-    each(&plan, [without(screen), screen, without(object), object])
-}
-
-/// The plan by kernels on discs in the tangent plane, each with its cut-off, σ.
-fn kernels<const N: usize>(plan: &Plan, kernels: [(Kernel, f32); N]) -> Vec<Plan> {
-    let one = |(kernel, cutoff)| {
-        let splatting =
-            Splatting { footprint: Footprint::Disc, kernel, filter: Filter::None, ..Splatting::default() };
-        let settings = Settings { splatting, cutoff, ..plan.settings.clone() };
-        Plan { settings, ..plan.clone() }
-    };
-    kernels.map(one).into()
-}
-
-const fn confetti(a: f32, n: f32) -> (Kernel, f32) {
-    (Kernel::Confetti { a, n }, 2.5)
-}
-
-fn kernel_blur(effect: &Effect) -> Vec<Plan> {
-    let mut plan = effect.plan("scene:relief?height=0&frequency=2", 20_000, 192);
-    plan.viewpoint = view([0.0, 3.0, 0.5], [0.0; 3], 60.0);
-    let gaussian = |sigma: f32| (Kernel::Gaussian, 1.5 / sigma);
-    kernels(&plan, [confetti(1.0, 2.0), confetti(4.0, 5.0), confetti(6.0, 3.0), gaussian(0.5), gaussian(0.8)])
-}
-
-fn kernel_facets(effect: &Effect) -> Vec<Plan> {
-    let plan = effect.plan("scene:sphere?albedo=plain", 3000, 256);
-    kernels(&plan, [confetti(4.0, 5.0), confetti(6.0, 3.0), (Kernel::Gaussian, 1.5 / 0.3)])
-}
-
-fn clip_lines(effect: &Effect) -> Vec<Plan> {
-    ["off", "on"].map(|clips| effect.plan(&format!("scene:part?clips={clips}"), 5000, 192)).into()
-}
-
-fn overlap(effect: &Effect) -> Vec<Plan> {
-    let mut plan = effect.plan("scene:bumpy-sphere", 137_062, 256);
-    plan.settings.shading = Shading::Overlap;
-    // There is no exact value to compare with.
-    plan.measurements.error = false;
-    ["confetti", "object-ewa"].map(|name| plan.by(&method(name))).into()
-}
-
-fn no_normalization(effect: &Effect) -> Vec<Plan> {
-    let mut plan = effect.plan("scene:torus?sampler=scanner&albedo=plain", 20_000, 192);
-    plan.settings.shading = Shading::Colour;
-    let object = plan.by(&method("object-ewa"));
-    let normalized = |normalization| Splatting { normalization, ..object.settings.splatting };
-    each(&object, [Normalization::None, Normalization::Surfel, Normalization::Pixel].map(normalized))
-}
-
-fn whole_sizes(effect: &Effect) -> Vec<Plan> {
-    let sprites = effect.plan("scene:bumpy-sphere", 100_000, 192).by(&method("sprites"));
-    let fractional = sprites.settings.splatting;
-    each(&sprites, [Splatting { footprint: Footprint::WholeSprite, ..fractional }, fractional])
-}
-
-/// A scene as lines and polygons by both rules of pull–push, and as surfels.
-fn drawn(effect: &Effect, scene: &str, points: u64) -> Vec<Plan> {
-    let separator = if scene.contains('?') { '&' } else { '?' };
-    let mut lines = effect.plan(&format!("{scene}{separator}primitives=on"), points, 512);
-    lines.settings.shading = Shading::Lit;
-    let surfels = Plan { scene: scene.into(), ..lines.clone() };
-    let by_rules = ["pull-push-paper", "pull-push"].map(|name| lines.by(&method(name)));
-    by_rules.into_iter().chain([surfels.by(&method("perspective-ewa"))]).collect()
-}
-
-fn layers(effect: &Effect) -> Vec<Plan> {
-    let plan = effect.plan("scene:slabs?slabs=2&gap=0.1&clips=off", 100_000, 512);
-    ["pull-push-paper", "pull-push", "perspective-ewa"].map(|name| plan.by(&method(name))).into()
 }
