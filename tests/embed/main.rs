@@ -3,6 +3,7 @@
 
 mod barriers;
 mod buffers;
+mod call_depth;
 mod compare;
 mod composite;
 mod fixture;
