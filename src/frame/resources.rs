@@ -1,6 +1,5 @@
 //! Frame resources: pipelines, targets and scene resources, created when scene or settings change and reused by frames.
 
-use super::slicing::Slicing;
 use super::description::{Description, describe};
 use super::pass::{Commands, Pass, Programs};
 use super::pipelines::{Host, Pipelines};
@@ -9,6 +8,7 @@ use super::recording::{Frame, PreparedPass};
 use super::renderer::RenderOptions;
 use super::scene_cache::SceneCache;
 use super::scene_resources::{InstanceRun, Needs, SceneResources, batches_of};
+use super::slicing::Slicing;
 use super::splat_list::{ListExtent, ListRange, SplatList, extent_of, padded_instances};
 use super::targets::{HostBindings, RenderTargets, check_size};
 use super::uniforms::{self, Uniforms};

@@ -195,7 +195,10 @@ fn compute_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
     if variant.visibility == Visibility::Nearest {
         // State between the slices of the nearest pass: depths and ids of splats.
         let nearest_splats = pixels(Resource::Sums0, Format::R32_UINT, 4, &resource::SUMS0);
-        return [Some(visibility), Some(nearest_splats), coverage(variant)].into_iter().chain(outputs).collect();
+        return [Some(visibility), Some(nearest_splats), coverage(variant)]
+            .into_iter()
+            .chain(outputs)
+            .collect();
     }
     let sums = |resource, wide: bool, shader| {
         let format = sums_format(Precision::Full, wide);

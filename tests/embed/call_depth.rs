@@ -14,10 +14,10 @@ use ash::vk;
 use std::backtrace::Backtrace;
 use std::ffi::{CStr, c_void};
 use std::sync::{Arc, Mutex};
+use surfel::Rasterizer;
 use surfel::embed::{Options, Renderer, View};
 use surfel::settings::methods::Method;
 use surfel::vk::Device;
-use surfel::{Precision, Rasterizer};
 
 /// Maximum number of the engine's functions on the stack of a dispatch: the renderer's, the frame's, the pass's, the one for
 /// its dispatches, and the encoder's.
@@ -84,8 +84,7 @@ fn few_calls_lead_from_a_renderer_to_a_dispatch() {
     let frame = Frame::new(&host, kind, SIZE).unwrap();
     let view = View::whole(camera(), SIZE);
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute].map(Some) {
-        let precision = Precision::Full;
-        let options = Options { target: frame.target(), frames_in_flight: 1, precision, rasterizer };
+        let options = Options { frames_in_flight: 1, rasterizer, ..Options::new(frame.target()) };
         // SAFETY: the target is the frame's.
         let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
         for method in Method::ALL {

@@ -3,7 +3,6 @@
 use crate::rig::{Rendered, SIZE, view};
 use std::sync::Arc;
 use surfel::settings::methods::Method;
-use surfel::settings::splatting::Visibility;
 use surfel::vk::{Device, DeviceLimits};
 use surfel::{Picture, Rasterizer, RenderOptions, Scene, Settings, SplatCounts};
 
@@ -26,12 +25,6 @@ pub const NARROW: DeviceLimits = DeviceLimits {
 
 pub fn settings(method: Method) -> Settings {
     Settings { background: None, ..method.settings() }
-}
-
-/// Tolerance of two frames: atomic sums have an arbitrary order.
-pub fn most(settings: &Settings, rasterizer: Rasterizer) -> f32 {
-    let blends = settings.pull_push.is_none() && settings.splatting.visibility != Visibility::Nearest;
-    if blends && rasterizer == Rasterizer::Compute { 2e-5 } else { 0.0 }
 }
 
 /// Number of pixels in which two frames differ by more than `most`.

@@ -15,7 +15,6 @@ use std::sync::atomic::Ordering;
 use surfel::embed::{self, Abilities, Options, Renderer, View};
 use surfel::geometry::Camera;
 use surfel::settings::methods::Method;
-use surfel::settings::splatting::Visibility;
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
 use surfel::{Error, Outputs, Picture, Rasterizer, RenderOptions, Scene, Settings};
 
@@ -66,23 +65,11 @@ fn an_embedded_picture_is_the_engines_own_bit_for_bit() {
             let mut fixture = Fixture::new(&host, kind, SIZE, rasterizer, &surfels());
             let view = View::whole(camera(), SIZE);
             let (colours, depths) = fixture.render(&host, &view, &settings, None);
-            // Atomic sums have an arbitrary order.
-            let blended = rasterizer == Some(Rasterizer::Compute)
-                && settings.splatting.visibility != Visibility::Nearest;
-            let most = if blended { 2e-5 } else { 0.0 };
-            let near = |a: f32, b: f32| (a - b).abs() <= most;
-            let same = |(a, b): (&[f32; 4], &[f32; 4])| a.iter().zip(b).all(|(a, b)| near(*a, *b));
-            assert!(
-                colours.len() == own.colour.len() && colours.iter().zip(&own.colour).all(same),
-                "{kind:?} {rasterizer:?}"
-            );
+            assert!(colours == own.colour, "{kind:?} {rasterizer:?}");
             // The near plane is at 0.1, and the depth is 0.1 over the distance.
             for (found, distance) in depths.iter().zip(depth) {
                 let exact = if *distance == 0.0 { 0.0 } else { 0.1 / f64::from(*distance) };
-                assert!(
-                    (f64::from(*found) - exact).abs() <= (1.5e-7 + f64::from(most)) * exact,
-                    "{found} {exact}"
-                );
+                assert!((f64::from(*found) - exact).abs() <= 1.5e-7 * exact, "{found} {exact}");
             }
             fixture.destroy(&host);
         }

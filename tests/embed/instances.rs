@@ -15,7 +15,6 @@ use std::sync::atomic::Ordering;
 use surfel::embed::{Options, Renderer, View};
 use surfel::geometry::Surfels;
 use surfel::settings::methods::Method;
-use surfel::settings::splatting::Visibility;
 use surfel::vk::{Device, DeviceOptions};
 use surfel::{Instance, Outputs, Picture, Rasterizer, RenderOptions, Scene, Settings};
 
@@ -99,18 +98,12 @@ fn a_composite_of_several_scenes_is_the_engines_own() {
             let list = instances(parts().map(|(surfels, _)| upload(&host, &device, &surfels)));
             draw(&host, &frame, &mut renderer, &list, &settings).unwrap();
             let (colours, depths) = frame.read(&host).unwrap();
-            // Atomic sums have an arbitrary order.
-            let blended = settings.splatting.visibility != Visibility::Nearest
-                && settings.pull_push.is_none()
-                && rasterizer == Rasterizer::Compute;
-            let most = if blended { 3e-5 } else { 0.0 };
             for (i, (colour, own)) in colours.iter().zip(&own.colour).enumerate() {
-                let near = colour.iter().zip(own).all(|(a, b)| (a - b).abs() <= most);
-                assert!(near, "{name} {rasterizer:?}, pixel {i}: {colour:?}, not {own:?}");
+                assert_eq!(colour, own, "{name} {rasterizer:?}, pixel {i}");
             }
             for (found, distance) in depths.iter().zip(own.depth.as_ref().unwrap()) {
                 let exact = if *distance == 0.0 { 0.0 } else { 0.1 / f64::from(*distance) };
-                assert!((f64::from(*found) - exact).abs() <= (1.5e-7 + f64::from(most)) * exact);
+                assert!((f64::from(*found) - exact).abs() <= 1.5e-7 * exact);
             }
             drop((renderer, list));
             frame.destroy(&host);

@@ -19,7 +19,7 @@ use program::Program;
 
 const SPHERE: &str = "scene:bumpy-sphere?points=5000";
 
-/// The rasterizer whose pictures repeat exactly: atomic float sums of compute shaders have no fixed order and differ in their last bits.
+/// The raster path, which the tests of saved pictures use.
 const DRAW: &str = "--rasterizer draw";
 
 /// A display and the program. Without an X server or a Vulkan device the test is skipped with a message.
