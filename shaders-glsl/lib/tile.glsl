@@ -223,6 +223,9 @@ uint visited_count;
 
 uint lane_level_start;
 
+// Cull key beyond all κ: further splats add nothing.
+const float COMPLETE = 1e29;
+
 // Level of blocks, whose nodes are visited near to far, and the most levels from it upwards.
 const uint BLOCKS = 3, LEVELS = 7;
 

@@ -1,10 +1,22 @@
 // Coverage on a tile: masks of the 16 samples of each pixel that lie on a surface: see lib/coverage.glsl.
+//
+// A splat covers an interval of each scanline of samples, so that lanes own rows of pixels here: lane % TILE is the row, and lanes of the
+// same row share its samples.
 
 #include "lib/coverage.glsl"
 
 layout(constant_id = 31) const bool COVERAGE = false; // α is the covered part of a pixel
 
+// Of each of the lane's pixels, as other stages own them: a bit per sample.
 uint coverage_masks[ROWS];
+
+const uint LANE_SAMPLES = SAMPLES * TILE / LANES;
+const uint SAMPLE_WORDS = (LANE_SAMPLES + 3) / 4;
+
+// Covered samples of the lane's row, a byte per sample, a bit per column.
+uint row_coverage[SAMPLE_WORDS];
+// Visible columns of the row, in each byte.
+uint row_visible;
 
 // As UNROLLED: 2 is slower than 1 but takes half the iterations.
 #ifndef COVERAGE_UNROLLED
@@ -15,41 +27,97 @@ uint coverage_masks[ROWS];
 float coverage_cull_key;
 
 void update_coverage_cull_key() {
-    uint all_masks = ALL_SAMPLES;
-    for (uint r = 0; r < ROWS; r++) all_masks &= depths[r] > 0.0 ? coverage_masks[r] : ALL_SAMPLES;
-    coverage_cull_key = workgroup_min(all_masks == ALL_SAMPLES ? 2.0 : 0.0) > 1.0 ? 1e30 : 0.0;
+    bool complete = true;
+    for (uint w = 0; w < SAMPLE_WORDS; w++) complete = complete && (row_coverage[w] & row_visible) == row_visible;
+    coverage_cull_key = workgroup_min(complete ? 2.0 : 0.0) > 1.0 ? 1e30 : 0.0;
 }
 
-// Mask of the samples that a splat covers at d px from the tile's first pixel, where it has a fragment: see coverage_mask. `solid` is its
-// solid ellipse.
-uint mask_on_tile(TileSplat solid, vec2 offset, vec2 d) {
+// Mask of the columns from x0 to x1.
+uint column_mask(float x0, float x1) {
+    uint first = uint(clamp(ceil(x0), 0.0, float(TILE))), beyond = uint(clamp(float(TILE - 1) - floor(x1), 0.0, float(TILE)));
+    return (0xffu << first) & (0xffu >> beyond) & 0xffu;
+}
+
+// Mask of the columns on the kept side of a clip line, whose value at column 0 is `value`.
+uint kept_columns(float value, float slope) {
+    float x = -value / slope;
+    if (slope == 0.0) return value >= 0.0 ? 0xffu : 0u;
+    return slope > 0.0 ? column_mask(x, float(TILE)) : column_mask(0.0, x);
+}
+
+// Mask of the columns whose pixels have their sample inside a solid ellipse; `d` is the sample in column 0, relative to the tile.
+uint sample_columns(TileSplat solid, vec2 d) {
     float limit = SOLID * frame.cutoff;
-    float nearness = on_plane() ? value_at(solid.plane, d) / solid.key_centre : 1.0;
-    vec2 slope = on_plane() ? (solid.plane.grid.yz + solid.plane.rest.yz) / solid.key_centre : vec2(0.0);
-    vec2 centre = value_at(solid.kernel, d);
     uint mask = 0;
-    for (uint k = 0; k < SAMPLES; k++) {
-        vec2 s = sample_position(k);
-        vec2 u = centre + vec2(dot(solid.kernel.u.yz, s), dot(solid.kernel.v.yz, s));
-        if (on_plane()) u /= clamp(nearness + dot(slope, s), 1.0 / MOST_STRETCH, MOST_STRETCH);
-        bool inside = rim() > 1.0 ? max(abs(u.x), abs(u.y)) <= limit : dot(u, u) <= limit * limit;
-        if (CLIPS) inside = inside && clip_distance(solid, d + s) >= -SEAM;
-        mask |= uint(inside) << k;
+    if (on_plane()) {
+        for (uint x = 0; x < TILE; x++) {
+            vec2 at = d + vec2(x, 0.0);
+            vec2 u = value_at(solid.kernel, at);
+            u /= clamp(value_at(solid.plane, at) / solid.key_centre, 1.0 / MOST_STRETCH, MOST_STRETCH);
+            bool inside = rim() > 1.0 ? max(abs(u.x), abs(u.y)) <= limit : dot(u, u) <= limit * limit;
+            mask |= uint(inside) << x;
+        }
+    } else {
+        vec2 u = value_at(solid.kernel, d), slope = vec2(solid.kernel.u.y + solid.kernel.u_rest.y, solid.kernel.v.y + solid.kernel.v_rest.y);
+        if (rim() > 1.0) {
+            vec2 a = (-limit - u) / slope, b = (limit - u) / slope;
+            vec2 first = min(a, b), last = max(a, b);
+            mask = column_mask(max(first.x, first.y), min(last.x, last.y));
+        } else {
+            float square = dot(slope, slope), across = u.x * slope.y - u.y * slope.x;
+            float discriminant = square * limit * limit - across * across;
+            float middle = -dot(u, slope) / square, reach = sqrt(max(discriminant, 0.0)) / square;
+            mask = discriminant >= 0.0 ? column_mask(middle - reach, middle + reach) : 0u;
+        }
     }
-    // A splat covers at least one sample of the pixel that contains its centre.
-    vec2 e = d - offset;
-    bool owns = mask == 0 && max(abs(e.x), abs(e.y)) <= 0.5;
-    return owns ? 1u << nearest_sample(-e) : mask;
+    if (CLIPS) {
+        uint kept[2];
+        for (uint i = 0; i < 2; i++) {
+            vec3 line = solid.lines[i];
+            kept[i] = kept_columns(line.x + dot(line.yz, d) + SEAM, line.y);
+        }
+        mask &= solid.concave > 0.0 ? kept[0] | kept[1] : kept[0] & kept[1];
+    }
+    return mask;
 }
 
-// Adds the samples that a splat covers, if `is_splat`.
-void add_coverage(TileSplat splat, TileSplat solid, vec2 offset, bool is_splat) {
-    for (uint r = 0; r < ROWS; r++) {
-        vec2 m, d = vec2(lane_pixel(r));
+// Adds the samples of a word that a splat covers at the columns of its `fragments`; returns the columns of which it covers samples.
+uint add_samples(TileSplat solid, float y, uint fragments, const uint word) {
+    uint any = 0, added = 0;
+    for (uint j = 0; j < LANE_SAMPLES - 4 * word && j < 4; j++) {
+        uint k = lane / TILE * LANE_SAMPLES + 4 * word + j;
+        uint columns = sample_columns(solid, vec2(0.0, y) + sample_position(k));
+        any |= columns;
+        added |= (columns & fragments) << 8 * j;
+    }
+    row_coverage[word] |= added;
+    return any;
+}
+
+// Adds the samples that a splat covers, if `is_splat`: see coverage_mask. `solid` is its solid ellipse, `offset` its centre relative to the
+// tile, px, `nearest` the sample nearest to it.
+void add_coverage(TileSplat splat, TileSplat solid, vec2 offset, uint nearest, bool is_splat) {
+    float y = float(lane % TILE);
+    uint first = lane / TILE * LANE_SAMPLES;
+    uint fragments = 0;
+    for (uint x = 0; x < TILE; x++) {
+        vec2 m;
         float key, rank;
-        bool has_fragment = tile_fragment(splat, d, m, key, rank) && is_splat;
-        uint mask = mask_on_tile(solid, offset, d);
-        coverage_masks[r] |= has_fragment ? mask : 0;
+        fragments |= uint(tile_fragment(splat, vec2(x, y), m, key, rank)) << x;
+    }
+    fragments = is_splat ? fragments : 0;
+    // One by one: the compiler does not unroll a loop of that many instructions, and dynamic indexing is slow.
+    uint any = add_samples(solid, y, fragments, 0);
+    if (SAMPLE_WORDS > 1) any |= add_samples(solid, y, fragments, 1);
+    if (SAMPLE_WORDS > 2) any |= add_samples(solid, y, fragments, 2);
+    if (SAMPLE_WORDS > 3) any |= add_samples(solid, y, fragments, 3);
+    for (uint k = 3; k < STEPS; k++) any |= shuffle(any, lane ^ 1u << k);
+    // A splat covers at least one sample of the pixel that contains its centre.
+    uint centre = abs(y - offset.y) <= 0.5 ? column_mask(offset.x - 0.5, offset.x + 0.5) : 0;
+    uint uncovered = centre & ~any & fragments;
+    for (uint w = 0; w < SAMPLE_WORDS; w++) {
+        uint byte = nearest - first - 4 * w;
+        row_coverage[w] |= byte < 4 ? uncovered << 8 * byte : 0;
     }
 }
 
@@ -59,14 +127,15 @@ void add_coverage_batch(uint count, uint id, uvec2 origin) {
     TileSplat lane_splat = splat_on_tile(ellipse_of(splat, visibility_variance(variance), clip_of(id)), centre);
     TileSplat lane_solid = splat_on_tile(solid_ellipse(splat, clip_of(id)), centre);
     vec2 lane_offset = splat.offset - (centre - anchor_of(splat));
+    uint lane_nearest = nearest_sample(lane_offset - ceil(lane_offset - 0.5));
     uint s = 0;
     do {
         TileSplat current = shuffle(lane_splat, s), solid = shuffle(lane_solid, s);
-        add_coverage(current, solid, shuffle(lane_offset, s), s < count);
+        add_coverage(current, solid, shuffle(lane_offset, s), shuffle(lane_nearest, s), s < count);
 #if COVERAGE_UNROLLED == 2
         current = shuffle(lane_splat, s + 1);
         solid = shuffle(lane_solid, s + 1);
-        add_coverage(current, solid, shuffle(lane_offset, s + 1), s + 1 < count);
+        add_coverage(current, solid, shuffle(lane_offset, s + 1), shuffle(lane_nearest, s + 1), s + 1 < count);
 #endif
         s += COVERAGE_UNROLLED;
     } while (s < count);
@@ -85,8 +154,29 @@ void add_coverage_batch(uint count, uint id, uvec2 origin) {
 
 // Computes coverage of the tile, after visibility: only visible pixels are covered.
 void compute_coverage(uvec2 origin) {
-    for (uint r = 0; r < ROWS; r++) coverage_masks[r] = is_resumed() ? coverage_masks[r] : 0;
-    for (uint r = 0; r < ROWS; r++) depths[r] = is_in_viewport(origin + lane_pixel(r)) ? depths[r] : 0.0;
+    for (uint w = 0; w < SAMPLE_WORDS; w++) row_coverage[w] = 0;
+    row_visible = 0;
+    for (uint r = 0; r < ROWS; r++) {
+        depths[r] = is_in_viewport(origin + lane_pixel(r)) ? depths[r] : 0.0;
+        uint columns = uint(depths[r] > 0.0) << lane % TILE;
+        for (uint k = 0; k < 3; k++) columns |= shuffle(columns, lane ^ 1u << k);
+        uint row = lane % TILE;
+        columns = shuffle(columns, TILE * (row % ROW_STEP));
+        row_visible = row / ROW_STEP == r ? columns : row_visible;
+    }
+    row_visible *= LANE_SAMPLES < 4 ? 0x101u : 0x1010101u;
     update_coverage_cull_key();
-    walk_coverage(origin, origin + TILE - 1, SCRATCH, SCRATCH, true);
+    // First those that visibility visited: they cover most tiles alone.
+    WORKGROUP_BARRIER();
+    bool all_recorded = visited_count <= MOST_VISITED;
+    walk_coverage(origin, origin + TILE - 1, all_recorded ? 0 : SCRATCH, all_recorded ? visited_count : SCRATCH, true);
+    for (uint r = 0; r < ROWS; r++) {
+        uvec2 pixel = lane_pixel(r);
+        uint mask = is_resumed() ? coverage_masks[r] : 0;
+        for (uint k = 0; k < SAMPLES; k++) {
+            uint word = shuffle(row_coverage[k % LANE_SAMPLES / 4], pixel.y + TILE * (k / LANE_SAMPLES));
+            mask |= (word >> 8 * (k % LANE_SAMPLES % 4) + pixel.x & 1u) << k;
+        }
+        coverage_masks[r] = mask;
+    }
 }

@@ -25,6 +25,8 @@ void WALK(uvec2 origin, uvec2 last, uint first, uint end, bool more) {
     // Open groups of siblings, per level from blocks up: a bit per remaining sibling, in order, and the order of siblings.
     uvec2 open_groups = uvec2(0);
     uint orders[LEVELS];
+    // Of the open group of blocks: κ of the lane's sibling, as more of them may be occluded when their turn comes.
+    float block_key = 0.0;
     uint depth = hierarchy.level - BLOCKS, group = hierarchy.group;
     {
         Box box = load_box(hierarchy.starts[hierarchy.level] + FAN_OUT * group + lane % FAN_OUT);
@@ -34,6 +36,7 @@ void WALK(uvec2 origin, uvec2 last, uint first, uint end, bool more) {
         for (uint l = 0; l < LEVELS; l++) orders[l] = order;
         lane_level_start = hierarchy.starts[1 + lane % FAN_OUT];
         open_groups = group_bits(hits, depth);
+        block_key = nearest_key(box);
     }
     int steps_left = min(WALK_STEPS, int(hierarchy.most_steps));
     uint nodes_start = level_start(1), parents_start = level_start(BLOCKS - 1);
@@ -53,8 +56,8 @@ void WALK(uvec2 origin, uvec2 last, uint first, uint end, bool more) {
                 open_groups.x &= is_low ? bits - 1 : 0;
                 open_groups.y &= is_low ? open_groups.y : bits - 1;
                 group >>= 3 * (level - depth);
-                uint node = FAN_OUT * group + (order >> 3 * (bit & 7u) & 7u);
-                found = more && level == 0;
+                uint sibling = order >> 3 * (bit & 7u) & 7u, node = FAN_OUT * group + sibling;
+                found = more && level == 0 && shuffle(block_key, sibling) > WALK_CULL_KEY;
                 block = found ? node : block;
                 depth = level;
                 bool opens = more && level > 0;
@@ -65,6 +68,7 @@ void WALK(uvec2 origin, uvec2 last, uint first, uint end, bool more) {
                     uint order;
                     uint hits = sort_hits(hit, nearest_key(box), order);
                     for (uint l = 0; l < LEVELS; l++) orders[l] = opens && finer == l ? order : orders[l];
+                    block_key = opens && finer == 0 ? nearest_key(box) : block_key;
                     open_groups |= group_bits(hits, finer);
                     group = opens ? node : group;
                     depth = opens ? finer : depth;
@@ -93,7 +97,7 @@ void WALK(uvec2 origin, uvec2 last, uint first, uint end, bool more) {
                 end += is_leaf ? bitCount(hits) : 0;
                 steps_left--;
             } while (open_nodes != 0 && steps_left > 0);
-            more = (open_groups.x | open_groups.y) != 0;
+            more = (open_groups.x | open_groups.y) != 0 && WALK_CULL_KEY < COMPLETE;
         } while (more && end - first < LANES && steps_left > 0);
         WORKGROUP_BARRIER();
         // Full batches, and an incomplete one at the end.

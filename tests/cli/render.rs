@@ -85,6 +85,27 @@ fn a_single_pixel_and_a_single_row_are_pictures() {
     }
 }
 
+/// lavapipe's subgroups are as wide as its vectors: 4, 8 or 16 lanes. Other devices ignore the variable.
+#[test]
+fn pictures_do_not_depend_on_the_width_of_vectors() {
+    let Some(program) = Program::with_device("pictures_do_not_depend_on_the_width_of_vectors") else {
+        return;
+    };
+    for options in
+        ["--alpha coverage", "--visibility axis", "--method sprites-unfiltered", "--method confetti"]
+    {
+        let pictures = ["128", "256", "512"].map(|width| {
+            let name = format!("{width}.exr");
+            let arguments = format!(
+                "render {SPHERE} {options} --layers depth,normal --size 200x150 --validate -o {name}"
+            );
+            program.run_with(&arguments, &[("LP_NATIVE_VECTOR_WIDTH", width)]).text();
+            std::fs::read(program.path(&name)).unwrap()
+        });
+        assert!(pictures[0] == pictures[1] && pictures[1] == pictures[2], "{options}");
+    }
+}
+
 #[test]
 fn a_size_over_the_limit_is_refused_with_the_limit() {
     let Some(program) = Program::with_device("a_size_over_the_limit_is_refused_with_the_limit") else {
