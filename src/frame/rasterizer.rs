@@ -130,6 +130,16 @@ pub(crate) fn rasterizer_for(
             };
             Err(Error::Usage(format!("the compute rasterizer needs {cause}: choose the draw rasterizer")))
         }
+        Some(Rasterizer::Draw) if options.most_splats.is_some() => Err(Error::Usage(
+            "the draw rasterizer has no bound on the splats of a tile (most_splats): leave the bound out, or choose the compute rasterizer"
+                .into(),
+        )),
+        None if options.most_splats.is_some() && can_compute => Ok(Rasterizer::Compute),
+        None if options.most_splats.is_some() => Err(Error::Usage(format!(
+            "only the compute rasterizer bounds the splats of a tile (most_splats), and {} cannot run it for this frame: leave the bound out, \
+             or render fewer surfels or pixels at once",
+            device.description().name
+        ))),
         Some(Rasterizer::Draw) | None if !can_draw && (options.rasterizer.is_some() || !can_compute) => {
             Err(Error::Usage(format!(
                 "coverage by the draw rasterizer needs buffers that fragment shaders write to (fragmentStoresAndAtomics), and 4 bytes a \

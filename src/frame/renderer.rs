@@ -37,7 +37,7 @@ pub struct RenderOptions {
     pub split: bool,
     /// Bound on the work of a frame on the compute path: about the maximum number of splats that each tile of 8 × 8 px visits in visibility,
     /// and again in coverage and attribute. A tile with more lacks the farthest ones, see [`FrameReport::incomplete`]. `None` visits all. The
-    /// raster path has no such bound.
+    /// raster path has no such bound, so that frames of splats with a bound take the compute path, or are rejected.
     pub most_splats: Option<u32>,
 }
 

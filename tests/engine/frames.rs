@@ -612,7 +612,10 @@ fn a_dense_spot_in_a_large_scene_has_all_of_its_splats() {
             assert!(apart < 1e-4 && !report.incomplete, "{name}, frame {frame}: {apart}");
         }
         let bounded = RenderOptions { most_splats: Some(1_000), ..all_outputs(Rasterizer::Compute) };
-        let mut bounded = Renderer::new(&device, bounded).unwrap();
+        let raster = RenderOptions { rasterizer: Some(Rasterizer::Draw), ..bounded };
+        let rejected = Renderer::new(&device, raster).unwrap().render(&scene, &camera(SIZE), &settings);
+        assert!(matches!(rejected.err(), Some(Error::Usage(text)) if text.contains("most_splats")));
+        let mut bounded = Renderer::new(&device, RenderOptions { rasterizer: None, ..bounded }).unwrap();
         let (picture, report) = bounded.render_picture(&scene, &camera(SIZE), &settings).unwrap();
         assert!(report.incomplete && largest_difference(&drawn, &picture) > 1e-3, "{name}");
     }
