@@ -16,7 +16,7 @@
 #include "lib/sums.glsl"
 #define LEVEL_0_ONLY
 #include "lib/pyramid.glsl"
-#include "lib/lens.glsl"
+#include "lib/camera_rays.glsl"
 #ifdef RASTER_POINTS
 #include "lib/raster_points.glsl"
 #else

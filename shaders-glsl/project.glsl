@@ -29,7 +29,7 @@
 #include "lib/sums.glsl"
 #define LEVEL_0_ONLY
 #include "lib/pyramid.glsl"
-#include "lib/lens.glsl"
+#include "lib/camera_rays.glsl"
 #endif
 
 layout(local_size_x = 64) in;

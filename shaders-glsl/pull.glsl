@@ -6,7 +6,7 @@
 
 #include "lib/frame.glsl"
 #include "lib/pyramid.glsl"
-#include "lib/lens.glsl"
+#include "lib/camera_rays.glsl"
 
 PYRAMID(3, from, readonly)
 DEFINE_LOAD(from)

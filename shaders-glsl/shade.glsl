@@ -9,7 +9,7 @@
 
 #include "lib/frame.glsl"
 #include "lib/pyramid.glsl"
-#include "lib/lens.glsl"
+#include "lib/camera_rays.glsl"
 #include "lib/shading.glsl"
 #include "lib/background.glsl"
 #include "lib/lattice.glsl"

@@ -4,7 +4,7 @@
 //! compared may differ by rounding.
 
 use super::super::Surfel;
-use super::lens::Radii2;
+use super::camera_rays::Radii2;
 use super::{Level, Reconstruction, Visible};
 use crate::geometry::Surfels;
 use crate::settings::Cull;

@@ -12,10 +12,10 @@
 //!
 //! The paper's phase `copy` (section 3.5) has no counterpart: levels are values, and nothing overwrites them.
 
+mod camera_rays;
 mod compact;
 mod coverage;
 mod decisions;
-mod lens;
 mod paper;
 mod progress;
 mod project;
@@ -32,9 +32,9 @@ use crate::error::{Error, Result};
 use crate::geometry::{Camera, Materials, MipMap, Parts, Surfels};
 use crate::settings::Settings;
 use crate::settings::pull_push::{PullPush, Rules};
+use camera_rays::{CameraRays, Radii2};
 use decisions::Decisions;
 use glam::{DVec2, DVec3};
-use lens::{Lens, Radii2};
 use progress::PassProgress;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -160,7 +160,7 @@ fn centre(level: u32, [x, y]: [i64; 2]) -> DVec2 {
 /// Rules and camera of a frame.
 pub struct Reconstruction {
     projector: Projector,
-    lens: Lens,
+    rays: CameraRays,
     pull_push: PullPush,
     texture: Option<Arc<MipMap>>,
     /// By point id.
@@ -172,8 +172,8 @@ impl Reconstruction {
     /// Prepares a frame of `size` px; fails as [`Projector::new`].
     pub fn new(camera: &Camera, size: [u32; 2], settings: &Settings, pull_push: PullPush) -> Result<Self> {
         let projector = Projector::new(camera, size, settings)?;
-        let lens = Lens::new(&projector);
-        Ok(Self { projector, lens, pull_push, texture: None, materials: None, compact: None })
+        let rays = CameraRays::new(&projector);
+        Ok(Self { projector, rays, pull_push, texture: None, materials: None, compact: None })
     }
 
     /// The same frame for `parts` with a texture or materials. Samples then have texture coordinates, except by the
@@ -231,8 +231,8 @@ impl Reconstruction {
 
     fn pull_with_progress(&self, finer: &Level, progress: &PassProgress<'_>) -> LevelDecisions {
         let made = match self.pull_push.rules {
-            Rules::Paper => paper::pull(&self.lens, finer, progress),
-            Rules::Robust => pull::pass(&self.lens, finer, progress),
+            Rules::Paper => paper::pull(&self.rays, finer, progress),
+            Rules::Robust => pull::pass(&self.rays, finer, progress),
         };
         LevelDecisions { level: self.stored(made.level), ..made }
     }
@@ -254,8 +254,8 @@ impl Reconstruction {
         progress: &PassProgress<'_>,
     ) -> LevelDecisions {
         let made = match self.pull_push.rules {
-            Rules::Paper => paper::push(&self.lens, coarser, pulled, progress),
-            Rules::Robust => push::pass(&self.lens, coarser, pulled, progress),
+            Rules::Paper => paper::push(&self.rays, coarser, pulled, progress),
+            Rules::Robust => push::pass(&self.rays, coarser, pulled, progress),
         };
         LevelDecisions { level: self.stored(made.level), ..made }
     }
@@ -269,8 +269,8 @@ impl Reconstruction {
     /// the published rules.
     fn radii2(&self, sample: &Sample, disc: DVec2, at: DVec2, h: f64) -> Radii2 {
         match self.pull_push.rules {
-            Rules::Paper => paper::radii2(&self.lens, sample, disc, at),
-            Rules::Robust => self.lens.radii2(sample, disc, at, h),
+            Rules::Paper => paper::radii2(&self.rays, sample, disc, at),
+            Rules::Robust => self.rays.radii2(sample, disc, at, h),
         }
     }
 

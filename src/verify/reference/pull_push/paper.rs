@@ -1,7 +1,7 @@
 //! Passes `pull` and `push` as published (marroquim2008 sections 3.2 and 3.3).
 
+use super::camera_rays::{CameraRays, Radii2};
 use super::decisions::Decisions;
-use super::lens::{Lens, Radii2};
 use super::pull::{children, mean_of_front};
 use super::push::nearest_four;
 use super::{Level, LevelDecisions, PassProgress, Sample, centre};
@@ -14,9 +14,9 @@ const LEAST_AXIS: f64 = 0.5;
 const RIM: f64 = 2.0;
 
 /// Squared distance of `at` from the centre of a disc's ellipse by parallel projection, in squared radii.
-pub fn radii2(lens: &Lens, sample: &Sample, disc: DVec2, at: DVec2) -> Radii2 {
+pub fn radii2(rays: &CameraRays, sample: &Sample, disc: DVec2, at: DVec2) -> Radii2 {
     let e = at - disc;
-    let normal = lens.normal(sample, disc);
+    let normal = rays.normal(sample, disc);
     let along = normal.truncate().normalize_or(DVec2::X);
     let minor = (sample.radius * normal.z.abs()).max(LEAST_AXIS);
     let major = sample.radius.max(LEAST_AXIS);
@@ -25,17 +25,22 @@ pub fn radii2(lens: &Lens, sample: &Sample, disc: DVec2, at: DVec2) -> Radii2 {
 }
 
 /// Fine to coarse.
-pub fn pull(lens: &Lens, finer: &Level, progress: &PassProgress<'_>) -> LevelDecisions {
+pub fn pull(rays: &CameraRays, finer: &Level, progress: &PassProgress<'_>) -> LevelDecisions {
     let level = finer.level + 1;
     LevelDecisions::new(level, finer.coarser_size(), progress, |at, decisions| {
         let own = centre(level, at);
-        let covers = |sample: &Sample, disc: DVec2| decisions.covers(radii2(lens, sample, disc, own));
+        let covers = |sample: &Sample, disc: DVec2| decisions.covers(radii2(rays, sample, disc, own));
         mean_of_front(own, &children(finer, at, covers), decisions)
     })
 }
 
 /// Coarse to fine: replaces a pixel that is empty or lies behind the coarser surface.
-pub fn push(lens: &Lens, coarser: &Level, pulled: &Level, progress: &PassProgress<'_>) -> LevelDecisions {
+pub fn push(
+    rays: &CameraRays,
+    coarser: &Level,
+    pulled: &Level,
+    progress: &PassProgress<'_>,
+) -> LevelDecisions {
     LevelDecisions::new(pulled.level, pulled.size, progress, |at, decisions| {
         let own = centre(pulled.level, at);
         let around = nearest_four(at);
@@ -43,7 +48,7 @@ pub fn push(lens: &Lens, coarser: &Level, pulled: &Level, progress: &PassProgres
         let behind = |point: &Sample| coarser.at(around[0]).is_some_and(|surface| point.near > surface.far);
         match point {
             Some(point) if !behind(&point) => Some(point),
-            _ => blend(lens, own, decisions, &around.map(|at| Some((coarser.at(at)?, coarser.centre(at))))),
+            _ => blend(rays, own, decisions, &around.map(|at| Some((coarser.at(at)?, coarser.centre(at))))),
         }
     })
 }
@@ -51,14 +56,14 @@ pub fn push(lens: &Lens, coarser: &Level, pulled: &Level, progress: &PassProgres
 /// The mean of covering discs of one kind: that of the greatest weight, as the paper does not define a mix of tangents
 /// and normals.
 fn blend(
-    lens: &Lens,
+    rays: &CameraRays,
     own: DVec2,
     decisions: &Decisions,
     coarser: &[Option<(Sample, DVec2)>],
 ) -> Option<Sample> {
     let weighted = coarser.iter().flatten().filter_map(|(sample, centre)| {
         let disc = *centre + sample.displacement;
-        let radii2 = radii2(lens, sample, disc, own);
+        let radii2 = radii2(rays, sample, disc, own);
         decisions.covers(radii2).then(|| (sample, disc, (-RIM * radii2.value).exp(), radii2.value))
     });
     let mut discs: Vec<_> = weighted.collect();

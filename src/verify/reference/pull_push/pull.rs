@@ -1,15 +1,15 @@
 //! Pass `pull`: merges finer samples in front into a coarser one (marroquim2008 section 3.2; with a perspective
 //! ellipse, and exact displacements).
 
-use super::lens::Lens;
+use super::camera_rays::CameraRays;
 use super::{Decisions, Level, LevelDecisions, PassProgress, Sample, centre};
 use glam::{DVec2, DVec3};
 
-pub fn pass(lens: &Lens, finer: &Level, progress: &PassProgress<'_>) -> LevelDecisions {
+pub fn pass(rays: &CameraRays, finer: &Level, progress: &PassProgress<'_>) -> LevelDecisions {
     let level = finer.level + 1;
     LevelDecisions::new(level, finer.coarser_size(), progress, |at, decisions| {
         let own = centre(level, at);
-        let covers = |sample: &Sample, disc: DVec2| decisions.covers(lens.radii2(sample, disc, own, 0.0));
+        let covers = |sample: &Sample, disc: DVec2| decisions.covers(rays.radii2(sample, disc, own, 0.0));
         mean_of_front(own, &children(finer, at, covers), decisions)
     })
 }

@@ -1,7 +1,7 @@
 //! Pass `push`: a finer pixel from the coarser ones around it and from its neighbours (marroquim2008 section 3.3; of
 //! the nearest surface only, and with neighbours of the same level, without which steep surfaces have holes).
 
-use super::lens::Lens;
+use super::camera_rays::CameraRays;
 use super::{Decisions, Level, LevelDecisions, PassProgress, Sample, centre};
 use glam::{DMat2, DVec2, DVec3};
 
@@ -28,14 +28,19 @@ struct Candidate {
     radii2: f64,
 }
 
-pub fn pass(lens: &Lens, coarser: &Level, pulled: &Level, progress: &PassProgress<'_>) -> LevelDecisions {
+pub fn pass(
+    rays: &CameraRays,
+    coarser: &Level,
+    pulled: &Level,
+    progress: &PassProgress<'_>,
+) -> LevelDecisions {
     let widening = WIDENING * f64::from(pulled.level).exp2().powi(2);
     LevelDecisions::new(pulled.level, pulled.size, progress, |at, decisions| {
         let own = centre(pulled.level, at);
         let candidate = |level: &Level, at: [i64; 2]| {
             let sample = level.at(at)?;
             let disc = level.centre(at) + sample.displacement;
-            let radii2 = lens.radii2(&sample, disc, own, widening);
+            let radii2 = rays.radii2(&sample, disc, own, widening);
             decisions.covers(radii2).then(|| Candidate {
                 sample,
                 disc,
@@ -49,7 +54,7 @@ pub fn pass(lens: &Lens, coarser: &Level, pulled: &Level, progress: &PassProgres
         // to others.
         let shown = pulled.level > 0 || beside[4].is_some();
         let candidates: Vec<_> = above.into_iter().chain(beside).flatten().collect();
-        let surface = blend(lens, own, &candidates, pulled.level == 0, decisions);
+        let surface = blend(rays, own, &candidates, pulled.level == 0, decisions);
         match (pulled.at(at).filter(|_| shown), surface) {
             (Some(point), Some(surface)) if !decisions.at_most(point.near, surface.far) => Some(surface),
             (Some(point), Some(surface))
@@ -85,7 +90,7 @@ fn neighbours([x, y]: [i64; 2]) -> [[i64; 2]; 9] {
 /// The weighted mean of the candidates that belong to the nearest surface and are of its kind, tube or not, for the
 /// pixel with centre `own`.
 fn blend(
-    lens: &Lens,
+    rays: &CameraRays,
     own: DVec2,
     candidates: &[Candidate],
     finest: bool,
@@ -102,7 +107,7 @@ fn blend(
         surface.iter().map(|c| c.weight * of(&c.sample)).sum::<DVec3>() / total
     };
     let depth = |c: &Candidate| {
-        if finest && !c.sample.tube { lens.depth_at(&c.sample, c.disc, own) } else { c.sample.depth }
+        if finest && !c.sample.tube { rays.depth_at(&c.sample, c.disc, own) } else { c.sample.depth }
     };
     Some(Sample {
         near: mean(&|c| c.sample.near),

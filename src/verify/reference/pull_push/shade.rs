@@ -57,7 +57,7 @@ fn value(frame: &Reconstruction, sample: &Sample, at: DVec2, alpha: f64) -> Valu
         (false, _) => (sample.depth, projector.to_world(sample.normal)),
         (true, Rules::Paper) => (sample.depth, line_normal(projector.to_world(sample.normal), viewer)),
         (true, Rules::Robust) => {
-            let (depth, normal) = frame.lens.on_tube(sample, at + sample.displacement, at);
+            let (depth, normal) = frame.rays.on_tube(sample, at + sample.displacement, at);
             (depth, projector.to_world(normal))
         }
     };

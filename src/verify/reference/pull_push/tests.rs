@@ -53,34 +53,34 @@ fn discs(list: &[(DVec3, DVec3, f32)]) -> Surfels {
 #[test]
 fn ellipses_are_the_derivative_of_the_projection() {
     let projector = Projector::new(&camera(), [64, 64], &Settings::default()).unwrap();
-    let lens = Lens::new(&projector);
+    let rays = CameraRays::new(&projector);
     // Projected points of a small circle around the centre: on the rim to first order in the radius.
     let (centre, normal, radius) = (DVec3::new(0.7, -0.4, 2.0), DVec3::new(0.5, 0.3, -1.0).normalize(), 1e-4);
     let pixel = |p: DVec3| {
         let h = projector.homogeneous_pixel(p.extend(1.0));
         h.truncate() / h.z
     };
-    let seen = Sample { normal, depth: 2.0, radius: lens.to_pixels(radius, 2.0), ..sample(2.0, 0.0) };
+    let seen = Sample { normal, depth: 2.0, radius: rays.to_pixels(radius, 2.0), ..sample(2.0, 0.0) };
     let (s, t) = normal.any_orthonormal_pair();
     for i in 0..12 {
         let (sin, cos) = (f64::from(i) * 0.5).sin_cos();
         let rim = pixel(centre + radius * (cos * s + sin * t));
-        let found = lens.radii2(&seen, pixel(centre), rim, 0.0).value;
+        let found = rays.radii2(&seen, pixel(centre), rim, 0.0).value;
         assert!((found - 1.0).abs() < 1e-3, "{i}: {found}");
     }
     // The plane's depth, too.
     let at = pixel(centre + radius * s);
-    let met = lens.depth_at(&seen, pixel(centre), at);
+    let met = rays.depth_at(&seen, pixel(centre), at);
     assert!((met - (centre + radius * s).z).abs() < 1e-9, "{met}");
 }
 
 #[test]
 fn depth_is_moved_by_a_radius_at_most() {
     let projector = Projector::new(&camera(), [64, 64], &Settings::default()).unwrap();
-    let lens = Lens::new(&projector);
+    let rays = CameraRays::new(&projector);
     let steep = Sample { normal: DVec3::new(1.0, 0.0, -0.01).normalize(), ..sample(2.0, 8.0) };
-    let reach = lens.to_length(8.0, 2.0);
-    let at = |x: f64| lens.depth_at(&steep, DVec2::splat(32.0), DVec2::new(x, 32.0));
+    let reach = rays.to_length(8.0, 2.0);
+    let at = |x: f64| rays.depth_at(&steep, DVec2::splat(32.0), DVec2::new(x, 32.0));
     assert_eq!((at(32.0), at(24.0), at(60.0)), (2.0, 2.0 - reach, 2.0 + reach));
 }
 
@@ -88,12 +88,12 @@ fn depth_is_moved_by_a_radius_at_most() {
 fn parallel_rays_meet_every_plane() {
     let camera = Camera::orthographic([DVec3::ZERO, DVec3::Z, DVec3::NEG_Y], 2.0, 1.0, [0.5, 8.0]).unwrap();
     let projector = Projector::new(&camera, [64, 64], &Settings::default()).unwrap();
-    let lens = Lens::new(&projector);
+    let rays = CameraRays::new(&projector);
     // Planes so steep that they pass behind the eye one pixel beside the disc's centre: the depth is clamped.
     let steep = |x: f64| Sample { normal: DVec3::new(x, 0.0, -0.001).normalize(), ..sample(2.0, 8.0) };
-    let reach = lens.to_length(8.0, 2.0);
+    let reach = rays.to_length(8.0, 2.0);
     for (x, sign) in [(1.0, 1.0), (-1.0, -1.0)] {
-        let at = |offset: f64| lens.depth_at(&steep(x), DVec2::splat(32.0), DVec2::new(32.0 + offset, 32.0));
+        let at = |offset: f64| rays.depth_at(&steep(x), DVec2::splat(32.0), DVec2::new(32.0 + offset, 32.0));
         assert_eq!((at(4.0), at(-4.0)), (2.0 + sign * reach, 2.0 - sign * reach));
     }
 }
@@ -215,9 +215,9 @@ fn triangles_of_a_square_hold_its_pixels_and_no_others() {
         let corner = |i: usize| DVec2::new(corners[i % 4].0, corners[i % 4].1);
         (0..4).all(|i| (corner(i + 1) - corner(i)).perp_dot(at - corner(i)) > 0.0)
     };
-    let lens = frame(Rules::Robust).lens;
+    let rays = frame(Rules::Robust).rays;
     for at in (0..64 * 64).map(|k| [k % 64, k / 64]) {
-        let seen = lens.step(level.centre(at)).truncate();
+        let seen = rays.step(level.centre(at)).truncate();
         assert_eq!(level.at(at).is_some(), inside(seen), "{at:?}");
         assert!(level.at(at).is_none_or(|s| s.near == s.far && s.displacement == DVec2::ZERO), "{at:?}");
     }
@@ -233,10 +233,10 @@ fn a_tube_is_round() {
         let settings = Settings { shading: Shading::Normal, ..Default::default() };
         let pull_push = PullPush::of(Rules::Robust);
         let picture = render(&model, &camera(), [64, 64], &settings, pull_push, &()).unwrap();
-        let lens = frame(Rules::Robust).lens;
+        let rays = frame(Rules::Robust).rays;
         let mut seen = 0;
         for (i, [x, y]) in (0..64 * 64).map(|k| (k as usize, [k % 64, k / 64])) {
-            let step = lens.step(centre(0, [x, y]));
+            let step = rays.step(centre(0, [x, y]));
             let across = |v: DVec3| v - v.dot(tangent) * tangent;
             let (a, b) = (across(step), across(axis));
             let root = a.dot(b).powi(2) - a.length_squared() * (b.length_squared() - radius * radius);
@@ -265,18 +265,18 @@ fn a_tube_is_round() {
 
 /// Cancels after a number of reports, and counts on.
 struct Impatient {
-    told: AtomicU64,
+    reports: AtomicU64,
     after: u64,
 }
 
 impl Progress for Impatient {
     fn at(&self, _: &'static str, done: u64, total: u64) {
         assert!(done <= total, "{done} of {total}");
-        self.told.fetch_add(1, Ordering::Relaxed);
+        self.reports.fetch_add(1, Ordering::Relaxed);
     }
 
     fn is_cancelled(&self) -> bool {
-        self.told.load(Ordering::Relaxed) >= self.after
+        self.reports.load(Ordering::Relaxed) >= self.after
     }
 }
 
@@ -285,18 +285,18 @@ fn a_frame_that_is_given_up_ends_wherever_it_is() {
     let surfels = discs(&[(DVec3::new(0.0, 0.0, 2.0), DVec3::NEG_Z, 0.2)]);
     for rules in [Rules::Robust, Rules::Paper] {
         let render = |after| {
-            let progress = Impatient { told: AtomicU64::new(0), after };
+            let progress = Impatient { reports: AtomicU64::new(0), after };
             let settings = Settings::default();
             let made = render(&surfels, &camera(), [64, 64], &settings, PullPush::of(rules), &progress);
-            (made, progress.told.into_inner())
+            (made, progress.reports.into_inner())
         };
         let (whole, all) = render(u64::MAX);
         assert!(whole.is_ok() && all > 100, "{all}");
         for after in [0, 1, 2, all / 2, all - 2, all - 1] {
-            let (made, told) = render(after);
+            let (made, reports) = render(after);
             assert!(matches!(made, Err(Error::Cancelled)), "after {after} of {all}");
             // Rows in progress, and the reports of the passes that follow.
-            let more = told - after;
+            let more = reports - after;
             assert!(more <= 2 + rayon::current_num_threads() as u64, "{more} more after {after} of {all}");
         }
     }

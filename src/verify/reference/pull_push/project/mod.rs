@@ -198,7 +198,7 @@ impl Reconstruction {
             far: distance + behind * disc.radius,
             depth: distance,
             displacement: if self.is_paper() { DVec2::ZERO } else { displacement },
-            radius: self.lens.to_pixels(disc.radius, distance),
+            radius: self.rays.to_pixels(disc.radius, distance),
             normal: disc.direction.normalize_or_zero(),
             tube,
             colour: disc.colour,

@@ -39,7 +39,7 @@ impl Reconstruction {
     pub(super) fn strands(&self, ends: [End; 2], tube: bool) -> Vec<Strand> {
         let half = ends.map(|end| {
             let distance = self.projector.distance(end.vertex.position);
-            self.lens.to_pixels(end.vertex.radius, distance)
+            self.rays.to_pixels(end.vertex.radius, distance)
         });
         let half = half[0].max(half[1]);
         let discs = ends.map(|end| end.vertex);

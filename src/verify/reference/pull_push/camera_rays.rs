@@ -12,7 +12,7 @@ const THIN: f64 = 1.0;
 const END_ON: f64 = 1e-4;
 
 /// Camera of a frame as pull–push uses it.
-pub struct Lens {
+pub struct CameraRays {
     perspective: bool,
     /// +1 if eye space looks along +z, else −1.
     forward: f64,
@@ -33,7 +33,7 @@ pub struct Radii2 {
     pub summands: f64,
 }
 
-impl Lens {
+impl CameraRays {
     pub fn new(projector: &Projector) -> Self {
         let column = |axis: DVec3| 0.5 * projector.size * projector.project(axis.extend(0.0)).truncate();
         let scale = DMat2::from_cols(column(DVec3::X), column(DVec3::Y));
