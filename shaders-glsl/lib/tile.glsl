@@ -174,22 +174,6 @@ bool tile_fragment(TileSplat splat, vec2 d, out vec2 m, out float key, out float
     return inside && rank > 0.0 && key > frame.key_far && key <= 1.0;
 }
 
-// Stream compaction: moves the values of the lanes in `mask` to the lanes from 0 on. Each moves down by the number of unset lanes below it,
-// by powers of two.
-uint compact(uint value, uint mask) {
-    uint moves = bitCount(~mask & ((1u << lane) - 1u));
-    moves = (mask >> lane & 1u) != 0 ? moves : 0;
-    for (uint k = 0; k < STEPS; k++) {
-        uint step = 1u << k;
-        uint from = min(lane + step, LANES - 1);
-        uint next_moves = shuffle(moves, from), next_value = shuffle(value, from);
-        bool comes = (next_moves & step) != 0 && lane + step < LANES;
-        value = comes ? next_value : value;
-        moves = comes ? next_moves : (moves & step) != 0 ? 0 : moves;
-    }
-    return value;
-}
-
 // lavapipe stops all loops of an invocation after 65,535 iterations in total (LP_MAX_TGSI_LOOP_ITERATIONS), which would leave holes: each
 // walk stops earlier, after its share. A walk visits some 30,000 visible splats per tile and dispatch; frames that may have more are
 // SLICED.

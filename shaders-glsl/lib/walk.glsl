@@ -73,7 +73,8 @@ void WALK(uvec2 origin, uvec2 last, uint first, uint end, bool more) {
                     group = opens ? node : group;
                     depth = opens ? finer : depth;
                 }
-            } while (more && !found);
+                steps_left--;
+            } while (more && !found && steps_left > 0);
 
             // Its remaining nodes of level 2, in the upper bits, and of one of them those of level 1.
             uint open_nodes = 0, parent = 0;
@@ -98,6 +99,7 @@ void WALK(uvec2 origin, uvec2 last, uint first, uint end, bool more) {
                 steps_left--;
             } while (open_nodes != 0 && steps_left > 0);
             more = (open_groups.x | open_groups.y) != 0 && WALK_CULL_KEY < COMPLETE;
+            steps_left--;
         } while (more && end - first < LANES && steps_left > 0);
         WORKGROUP_BARRIER();
         // Full batches, and an incomplete one at the end.
@@ -118,12 +120,13 @@ void WALK(uvec2 origin, uvec2 last, uint first, uint end, bool more) {
 #else
             const bool wraps = true;
 #endif
-            uint id = visited_ids[first + lane];
+            uint id = lane < pending ? visited_ids[first + lane] : 0;
             WORKGROUP_BARRIER();
             if (wraps && lane < pending) visited_ids[WALK_START + lane] = id;
             first = wraps ? WALK_START : first;
             end = wraps ? WALK_START + pending : end;
         }
+        steps_left--;
     } while (more && steps_left > 0);
 #ifdef WALK_RECORDS
     visited_count = max(visited_count, end);

@@ -51,8 +51,3 @@ float workgroup_min(float value) {
     for (uint k = 0; k < STEPS; k++) value = min(value, shuffle(value, lane ^ 1u << k));
     return value;
 }
-
-float workgroup_max(float value) {
-    for (uint k = 0; k < STEPS; k++) value = max(value, shuffle(value, lane ^ 1u << k));
-    return value;
-}
