@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::geometry::Camera;
 use crate::picture::Picture;
 use crate::scene::Scene;
-use crate::scene::instance::{Instances, Placed};
+use crate::scene::instance::Instances;
 use crate::settings::Settings;
 use crate::settings::{Outputs, Precision, Rasterizer};
 use crate::vk::shaders::layout::Counts;
@@ -94,7 +94,15 @@ impl Renderer {
         settings: &Settings,
     ) -> Result<FrameReport> {
         let placed = scenes.into().placed(self.frame.device())?;
-        self.submit(&placed, camera, settings, false)
+        loop {
+            let (uniforms, _) = self.frame.prepare(&placed, camera, settings, false)?;
+            self.frame.record(&mut self.commands.begin()?, &uniforms);
+            self.commands.submit()?;
+            let report = self.report()?;
+            if !self.lacks_slices(&report) {
+                return Ok(report);
+            }
+        }
     }
 
     /// Renders a frame and reads it back.
@@ -105,43 +113,27 @@ impl Renderer {
         settings: &Settings,
     ) -> Result<(Picture, FrameReport)> {
         let placed = scenes.into().placed(self.frame.device())?;
-        let report = self.submit(&placed, camera, settings, true)?;
-        let current = self.frame.current();
-        let picture = current.map(|current| current.targets.picture(&current.readback));
-        Ok((picture.unwrap_or_default(), report))
-    }
-
-    /// Renders a frame, and again with its splats in slices if a tile lacked some.
-    fn submit(
-        &mut self,
-        placed: &[Placed<'_>],
-        camera: &Camera,
-        settings: &Settings,
-        read: bool,
-    ) -> Result<FrameReport> {
-        let report = self.submit_once(placed, camera, settings, read)?;
-        if report.incomplete && self.frame.most_splats().is_none() {
-            self.submit_once(placed, camera, settings, read)
-        } else {
-            Ok(report)
+        loop {
+            let (uniforms, _) = self.frame.prepare(&placed, camera, settings, true)?;
+            let mut rec = self.commands.begin()?;
+            self.frame.record(&mut rec, &uniforms);
+            let current = self.frame.current();
+            current.inspect(|current| current.targets.record_readback(&mut rec, &current.readback));
+            self.commands.submit()?;
+            let report = self.report()?;
+            if self.lacks_slices(&report) {
+                continue;
+            }
+            let current = self.frame.current();
+            let picture = current.map(|current| current.targets.picture(&current.readback));
+            return Ok((picture.unwrap_or_default(), report));
         }
     }
 
-    fn submit_once(
-        &mut self,
-        placed: &[Placed<'_>],
-        camera: &Camera,
-        settings: &Settings,
-        read: bool,
-    ) -> Result<FrameReport> {
-        let (uniforms, _) = self.frame.prepare(placed, camera, settings, read)?;
-        let mut rec = self.commands.begin()?;
-        self.frame.record(&mut rec, &uniforms);
-        if let Some(current) = self.frame.current().filter(|_| read) {
-            current.targets.record_readback(&mut rec, &current.readback);
-        }
-        self.commands.submit()?;
-        self.report()
+    /// Whether the frame is to be rendered again, in slices, because a tile lacks splats without a bound on them.
+    fn lacks_slices(&self, report: &FrameReport) -> bool {
+        let sliced = self.frame.current().is_none_or(|current| current.variant.sliced);
+        report.incomplete && !sliced && self.frame.most_splats().is_none()
     }
 
     /// Enables or disables profiling of later frames, if [`RenderOptions::profile`] is set: the cost of a whole frame is best measured
