@@ -31,3 +31,4 @@ mod sphere;
 #[path = "../support/mod.rs"]
 mod support;
 mod texture;
+mod tiles;

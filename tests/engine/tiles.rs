@@ -1,0 +1,160 @@
+//! Tiles: workgroups of every kind, crowded tiles, dense spots and split passes render the same picture.
+
+use crate::frames::{SIZE, agrees, all_outputs, camera, largest_difference, picture_on, sphere};
+use crate::support::gpu::{assert_silent, device, render};
+use glam::Vec3;
+use surfel::geometry::Surfels;
+use surfel::settings::Alpha;
+use surfel::settings::methods::Method;
+use surfel::vk::DeviceLimits;
+use surfel::{Error, Rasterizer, RenderOptions, Renderer, Scene, Settings};
+
+#[test]
+fn a_picture_may_be_larger_than_a_storage_buffer() {
+    let surfels = sphere(5_000);
+    // Less than the 16 bytes a pixel of the image.
+    let limits = DeviceLimits { max_storage_buffer_range: Some(1 << 19), ..Default::default() };
+    let Some(device) = device(limits) else { return };
+    let unlimited = self::device(DeviceLimits::default()).unwrap();
+    for (name, alpha) in [("perspective-ewa", Alpha::Coverage), ("sprites-unfiltered", Alpha::Mask)] {
+        let settings = Settings { alpha, ..Method::named(name).unwrap().settings() };
+        let [picture, expected] = [&device, &unlimited].map(|device| {
+            render(device, &surfels, &camera(SIZE), &settings, all_outputs(Rasterizer::Compute))
+        });
+        assert!(picture == expected, "{name}");
+    }
+    let options = RenderOptions { split: true, ..all_outputs(Rasterizer::Compute) };
+    let scene = Scene::upload(&device, &surfels).unwrap();
+    let refused =
+        Renderer::new(&device, options).unwrap().render(&scene, &camera(SIZE), &Settings::default());
+    assert!(matches!(refused.err(), Some(Error::Usage(text)) if text.contains("524288 bytes")));
+    assert_silent(&device);
+}
+
+#[test]
+fn every_kind_of_tile_workgroup_renders_the_same_picture() {
+    let surfels = sphere(5_000);
+    let picture = |limits: DeviceLimits| {
+        let device = device(limits)?;
+        let picture = picture_on(&device, &surfels, all_outputs(Rasterizer::Compute));
+        assert_silent(&device);
+        Some(picture)
+    };
+    let Some(subgroups) = picture(DeviceLimits::default()) else { return };
+    assert!(agrees(&subgroups, &surfels));
+    // With shared memory, and with storage buffers.
+    for limits in [
+        DeviceLimits { subgroup_size: Some(0), ..Default::default() },
+        DeviceLimits { max_texels: Some(4 * 4_999), ..Default::default() },
+    ] {
+        assert!(picture(limits).unwrap() == subgroups);
+    }
+}
+
+#[test]
+fn splats_beyond_buffer_limits_take_the_raster_path() {
+    let limits = DeviceLimits {
+        max_storage_buffer_range: Some(1 << 20),
+        max_texels: Some(1 << 16),
+        ..Default::default()
+    };
+    let Some(device) = device(limits) else { return };
+    let surfels = sphere(20_000);
+    let options = RenderOptions { size: [64; 2], ..Default::default() };
+    let scene = Scene::upload(&device, &surfels).unwrap();
+    let mut renderer = Renderer::new(&device, options).unwrap();
+    renderer.render(&scene, &camera([64; 2]), &Settings::default()).unwrap();
+    assert_eq!(renderer.rasterizer(), Some(Rasterizer::Draw));
+    let compute = RenderOptions { rasterizer: Some(Rasterizer::Compute), ..options };
+    let mut compute = Renderer::new(&device, compute).unwrap();
+    let refused = compute.render(&scene, &camera([64; 2]), &Settings::default());
+    assert!(matches!(refused.err(), Some(Error::Usage(text)) if text.contains("65536 texels")));
+    assert_silent(&device);
+}
+
+#[test]
+fn crowded_tiles_show_all_splats() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let surfels = sphere(70_000);
+    let size = [16; 2];
+    for name in ["perspective-ewa", "sprites-unfiltered"] {
+        for alpha in [Alpha::Mask, Alpha::Coverage] {
+            let settings = Settings { alpha, ..Method::named(name).unwrap().settings() };
+            let [raster, compute] = [Rasterizer::Draw, Rasterizer::Compute].map(|rasterizer| {
+                let options = RenderOptions { size, ..all_outputs(rasterizer) };
+                render(&device, &surfels, &camera(size), &settings, options)
+            });
+            assert!(raster.colour.iter().filter(|colour| colour[3] > 0.0).count() > 50, "{name}");
+            let difference = largest_difference(&raster, &compute);
+            assert!(difference < 1e-4, "{name}, {alpha:?}: {difference}");
+        }
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn split_passes_render_the_same_picture() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let scene = Scene::upload(&device, &sphere(5_000)).unwrap();
+    for alpha in [Alpha::Mask, Alpha::Coverage] {
+        let [fused, split] = [false, true].map(|split| {
+            let options = RenderOptions { split, profile: true, ..all_outputs(Rasterizer::Compute) };
+            let settings = Settings { alpha, ..Default::default() };
+            let mut renderer = Renderer::new(&device, options).unwrap();
+            let (picture, report) = renderer.render_picture(&scene, &camera(SIZE), &settings).unwrap();
+            let names: Vec<_> = report.pass_times.iter().map(|time| time.label).collect();
+            let targets: Vec<_> = renderer.targets().iter().map(|target| target.name).collect();
+            (picture, names, targets)
+        });
+        assert!(fused.0 == split.0, "{alpha:?}");
+        assert!(fused.0.colour.iter().filter(|colour| colour[3] > 0.0).count() > 5_000);
+        if device.capabilities().timestamps.is_some() {
+            assert!(
+                fused.1.contains(&"surface") && split.1.contains(&"attribute"),
+                "{:?} {:?}",
+                fused.1,
+                split.1
+            );
+        }
+        assert_eq!(fused.2, ["image", "normal", "depth"]);
+        assert!(split.2.contains(&"visibility") && split.2.contains(&"sums1"), "{:?}", split.2);
+    }
+    assert_silent(&device);
+}
+
+/// 60,000 surfels within a few pixels, and 2,000 beside them.
+fn dense_spot() -> Surfels {
+    let mut all = sphere(2_000);
+    all.positions.iter_mut().for_each(|position| position.x -= 1.5);
+    let dense = sphere(60_000);
+    all.positions.extend(dense.positions.iter().map(|position| 0.01 * position + Vec3::X));
+    all.normals.extend(dense.normals);
+    all.radii.extend(dense.radii.iter().map(|radius| 0.01 * radius));
+    all.colours = None;
+    all
+}
+
+#[test]
+fn a_dense_spot_in_a_large_scene_has_all_of_its_splats() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let surfels = dense_spot();
+    let scene = Scene::upload(&device, &surfels).unwrap();
+    for (name, alpha) in [("perspective-ewa", Alpha::Mask), ("sprites-unfiltered", Alpha::Coverage)] {
+        let settings = Settings { alpha, ..Method::named(name).unwrap().settings() };
+        let drawn = render(&device, &surfels, &camera(SIZE), &settings, all_outputs(Rasterizer::Draw));
+        let mut renderer = Renderer::new(&device, all_outputs(Rasterizer::Compute)).unwrap();
+        for frame in 0..2 {
+            let (computed, report) = renderer.render_picture(&scene, &camera(SIZE), &settings).unwrap();
+            let apart = largest_difference(&drawn, &computed);
+            assert!(apart < 1e-4 && !report.incomplete, "{name}, frame {frame}: {apart}");
+        }
+        let bounded = RenderOptions { most_splats: Some(1_000), ..all_outputs(Rasterizer::Compute) };
+        let raster = RenderOptions { rasterizer: Some(Rasterizer::Draw), ..bounded };
+        let rejected = Renderer::new(&device, raster).unwrap().render(&scene, &camera(SIZE), &settings);
+        assert!(matches!(rejected.err(), Some(Error::Usage(text)) if text.contains("most_splats")));
+        let mut bounded = Renderer::new(&device, RenderOptions { rasterizer: None, ..bounded }).unwrap();
+        let (picture, report) = bounded.render_picture(&scene, &camera(SIZE), &settings).unwrap();
+        assert!(report.incomplete && largest_difference(&drawn, &picture) > 1e-3, "{name}");
+    }
+    assert_silent(&device);
+}
