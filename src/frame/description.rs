@@ -2,6 +2,7 @@
 
 use super::rasterizer::{Fit, rasterizer_of, width_of_sums};
 use super::renderer::RenderOptions;
+use super::slicing::{Slicing, total_splats_per_tile};
 use super::splat_list::{extent_of_frame, workgroup_of};
 use super::uniforms::Uniforms;
 use super::variant::{SceneVariant, Variant};
@@ -17,16 +18,18 @@ pub struct Description {
     pub variant: Variant,
     /// Variants of its scenes.
     pub scenes: Vec<SceneVariant>,
+    /// Average splats per covered tile.
+    pub splats_per_tile: f64,
 }
 
-/// Describes a frame, whose splats come in slices if `sliced`; rejects unsupported frames.
+/// Describes a frame; rejects unsupported frames.
 pub fn describe(
     device: &Device,
     options: &RenderOptions,
     scenes: &[Placed<'_>],
     camera: &Camera,
     settings: &Settings,
-    sliced: bool,
+    slicing: &Slicing,
 ) -> Result<Description> {
     settings.check()?;
     for Placed { scene, .. } in scenes {
@@ -36,6 +39,9 @@ pub fn describe(
     settings.check_outputs(options.outputs)?;
     let uniforms = Uniforms::new(camera, settings, options.size, scenes)?;
     let workgroup = workgroup_of(device, extent_of_frame(device, scenes));
+    let splats_per_tile = total_splats_per_tile(scenes, camera, options.size);
+    // With a bound on the work of a tile there are no slices.
+    let sliced = options.most_splats.is_none() && slicing.needs_slices(scenes, splats_per_tile);
     let fit = Fit::new(device, options, workgroup.is_some(), sliced);
     let rasterizer = rasterizer_of(device, options, settings, scenes, fit)?;
     let perspective = camera.projection()?.perspective;
@@ -50,7 +56,7 @@ pub fn describe(
     check_lookups(&variant, scenes)?;
     let instanced = !uniforms.instances.is_empty();
     let scenes = streams.into_iter().map(|streams| SceneVariant::new(variant, streams, instanced)).collect();
-    Ok(Description { uniforms, variant, scenes })
+    Ok(Description { uniforms, variant, scenes, splats_per_tile })
 }
 
 /// Rejects several scenes if one has a texture or materials: pixels look them up in one table.

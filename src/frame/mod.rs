@@ -51,6 +51,7 @@ pub(crate) mod targets;
 pub mod times;
 pub(crate) mod uniforms;
 pub(crate) mod variant;
+pub(crate) mod variant_resources;
 
 pub use plan::FramePlan;
 pub use pyramid_samples::{PyramidLevel, PyramidSample};

@@ -1,10 +1,9 @@
 //! Frame resources: pipelines, targets and scene resources, created when scene or settings change and reused by frames.
 
 use super::description::{Description, describe};
-use super::pass::{Commands, Pass, Programs};
 use super::pipelines::{Host, Pipelines};
 use super::rasterizer::width_of_blended_sums;
-use super::recording::{Frame, PreparedPass};
+use super::recording::Frame;
 use super::renderer::RenderOptions;
 use super::scene_cache::SceneCache;
 use super::scene_resources::{InstanceRun, Needs, SceneResources, batches_of};
@@ -13,6 +12,7 @@ use super::splat_list::{ListExtent, ListRange, SplatList, extent_of, padded_inst
 use super::targets::{HostBindings, RenderTargets, check_size};
 use super::uniforms::{self, Uniforms};
 use super::variant::{SceneVariant, Variant};
+use super::variant_resources::{VariantResources, ViewSet, prepared};
 use crate::error::Result;
 use crate::geometry::Camera;
 use crate::scene::Scene;
@@ -20,8 +20,7 @@ use crate::scene::instance::Placed;
 use crate::settings::Precision;
 use crate::settings::Settings;
 use crate::settings::splatting::Visibility;
-use crate::vk::shaders::resource;
-use crate::vk::{Access, Binding, Buffer, DescriptorSet, Device, Framebuffer, Recorder};
+use crate::vk::{Access, Buffer, Device, Recorder};
 use std::any::Any;
 use std::sync::Arc;
 
@@ -58,30 +57,6 @@ pub enum Disposal {
 
 /// An unused resource, kept until the GPU has finished with it.
 pub type Deferred = Box<dyn Any + Send + Sync>;
-
-/// Targets and passes of a variant.
-pub struct VariantResources {
-    /// Unique id.
-    pub id: u64,
-    pub variant: Variant,
-    /// Variants of the scenes that the passes have pipelines for.
-    scenes: Vec<SceneVariant>,
-    /// Id of the splat list in the passes' descriptor sets.
-    splats: u64,
-    passes: Vec<PreparedPass>,
-    view: ViewSet,
-    pub targets: RenderTargets,
-    pub readback: Vec<Buffer>,
-    /// Keeps the buffer in the view's set alive.
-    _view: Arc<Buffer>,
-}
-
-/// Descriptor set 0 of passes over pixels.
-struct ViewSet {
-    set: DescriptorSet,
-    /// The scene whose texture or materials it binds.
-    scene: Option<u64>,
-}
 
 impl Disposal {
     fn add<T: Any + Send + Sync>(&mut self, deferred: Option<T>) {
@@ -187,8 +162,8 @@ impl FrameResources {
         size: [u32; 2],
     ) -> Result<Description> {
         // Where the work of a tile is bounded there are no slices.
-        let sliced = self.most_splats().is_none() && self.slicing.needs_slices(scenes, camera, size);
-        describe(&self.device, &RenderOptions { size, ..self.options }, scenes, camera, settings, sliced)
+        let options = RenderOptions { size, ..self.options };
+        describe(&self.device, &options, scenes, camera, settings, &self.slicing)
     }
 
     /// See [`RenderOptions::most_splats`].
@@ -211,7 +186,7 @@ impl FrameResources {
     ) -> Result<(Uniforms, Variant)> {
         let frame = self.describe(scenes, camera, settings, self.options.size)?;
         self.make(scenes, &frame, self.options.size, &[])?;
-        self.slicing.begin(scenes, camera, self.options.size);
+        self.slicing.begin(scenes, frame.splats_per_tile);
         match &mut self.current {
             Some(current) if read && current.readback.is_empty() => {
                 current.readback = current.targets.make_readback(&self.device)?;
@@ -488,46 +463,5 @@ impl FrameResources {
         current.scenes = scenes.to_vec();
         current.splats = splats_id;
         Ok(())
-    }
-}
-
-impl VariantResources {
-    /// A pass of this variant.
-    pub fn pass(&self, pass: &'static Pass) -> Option<&PreparedPass> {
-        self.passes.iter().find(|prepared| std::ptr::eq(prepared.pass, pass))
-    }
-}
-
-/// Creates a pass without its pipelines.
-fn prepared(
-    device: &Arc<Device>,
-    pass: &'static Pass,
-    pipelines: &mut Pipelines,
-    current: &VariantResources,
-    of_host: HostBindings<'_>,
-) -> Result<PreparedPass> {
-    let framebuffer = match (pipelines.render_pass(device, pass, &current.variant)?, &pass.commands) {
-        (Some(into), Commands::Draws(targets)) => {
-            Some(Framebuffer::new(device, &into, &targets.images(&current.targets))?)
-        }
-        _ => None,
-    };
-    let targets = match pass.programs {
-        Programs::None => None,
-        Programs::OfFrame(_) | Programs::OfScene(_) => Some(current.targets.set(device, pass, of_host)?),
-    };
-    Ok(PreparedPass { pass, accesses: Vec::new(), targets, framebuffer, pipelines: Vec::new() })
-}
-
-impl ViewSet {
-    fn new(device: &Arc<Device>, view: &Buffer, variant: &Variant, scene: Option<&Scene>) -> Result<Self> {
-        let texture = scene.and_then(|scene| scene.texture.as_ref()).filter(|_| variant.texture.is_some());
-        let materials = scene.and_then(|scene| scene.materials.as_ref()).filter(|_| variant.materials);
-        let lookups = [
-            texture.map(|texture| (&resource::TEXTURE, Binding::whole(&texture.buffer))),
-            materials.map(|materials| (&resource::MATERIALS, Binding::whole(&materials.buffer))),
-        ];
-        let all: Vec<_> = uniforms::bindings(view).into_iter().chain(lookups.into_iter().flatten()).collect();
-        Ok(Self { set: DescriptorSet::new(device, &all)?, scene: scene.map(|scene| scene.id) })
     }
 }

@@ -42,19 +42,18 @@ impl Slicing {
         &self.buffer
     }
 
-    /// Whether dispatches over tiles need slices.
-    pub fn needs_slices(&self, scenes: &[Placed<'_>], camera: &Camera, size: [u32; 2]) -> bool {
-        let threshold = if self.is_of(scenes) { self.threshold } else { MOST_SPLATS };
-        total_splats_per_tile(scenes, camera, size) >= threshold
+    /// Whether dispatches over tiles need slices, at this average number of splats per covered tile.
+    pub fn needs_slices(&self, scenes: &[Placed<'_>], average: f64) -> bool {
+        average >= if self.is_of(scenes) { self.threshold } else { MOST_SPLATS }
     }
 
-    /// Begins the next frame.
-    pub fn begin(&mut self, scenes: &[Placed<'_>], camera: &Camera, size: [u32; 2]) {
+    /// Begins the next frame, which has this average number of splats per covered tile.
+    pub fn begin(&mut self, scenes: &[Placed<'_>], average: f64) {
         if !self.is_of(scenes) {
             self.threshold = MOST_SPLATS;
             self.scenes = scenes.iter().map(|placed| placed.scene.id).collect();
         }
-        self.last = total_splats_per_tile(scenes, camera, size);
+        self.last = average;
         self.frame = self.frame.wrapping_add(1).max(1);
     }
 
@@ -79,8 +78,8 @@ impl Slicing {
     }
 }
 
-/// Sum over the scenes of [`splats_per_tile`].
-fn total_splats_per_tile(scenes: &[Placed<'_>], camera: &Camera, size: [u32; 2]) -> f64 {
+/// Average splats per covered tile, summed over the scenes.
+pub fn total_splats_per_tile(scenes: &[Placed<'_>], camera: &Camera, size: [u32; 2]) -> f64 {
     scenes.iter().map(|placed| splats_per_tile(placed, camera, size)).sum()
 }
 

@@ -366,7 +366,7 @@ impl Renderer {
         self.plan.check(&frame.variant)?;
         let origin = [area.offset.x as f32, area.offset.y as f32];
         frame.uniforms.frame.origin = origin;
-        let Description { uniforms, variant, scenes: own } = &frame;
+        let Description { uniforms, variant, scenes: own, .. } = &frame;
         let format = self.plan.seeded().filter(|_| own.iter().all(can_seed));
         let largest = placed.iter().map(|placed| placed.largest()).reduce(|a, b| Some(a?.max(b?))).flatten();
         let seed = format.zip(largest).and_then(|(format, largest)| {
