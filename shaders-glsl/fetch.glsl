@@ -1,11 +1,28 @@
 // Fetch: writes the samples of level 0 from the nearest point of each pixel, which is of a surfel, a segment (LINES) or a triangle
-// (TRIANGLES). With RASTER_POINTS the points of surfels come from the raster path.
+// (TRIANGLES). With RASTER_POINTS the points of surfels come from the raster path. EMPTY writes empty samples.
 #version 450
 #pragma variant LINES
 #pragma variant TRIANGLES
 #pragma variant RASTER_POINTS
+#pragma variant EMPTY
 #extension GL_GOOGLE_include_directive : require
 #ifdef COMPUTE
+
+#ifdef EMPTY
+
+#include "lib/frame.glsl"
+#include "lib/pixel_group.glsl"
+#include "lib/pyramid.glsl"
+
+PYRAMID_TO_WRITE(2, to)
+
+void main() {
+    ivec2 pixel = invocation_pixel();
+    if (is_within(picture_size(), pixel)) store_to(pixel, NO_SAMPLE);
+}
+
+#else
+
 #ifdef RASTER_POINTS
 #extension GL_EXT_samplerless_texture_functions : require
 #else
@@ -14,7 +31,7 @@
 
 #include "lib/instance.glsl"
 #include "lib/sums.glsl"
-#define LEVEL_0_ONLY
+#include "lib/pixel_group.glsl"
 #include "lib/pyramid.glsl"
 #include "lib/camera_rays.glsl"
 #ifdef RASTER_POINTS
@@ -24,10 +41,7 @@
 #include "lib/nearest_points.glsl"
 #endif
 
-PYRAMID(2, to, writeonly)
-DEFINE_STORE(to)
-
-layout(local_size_x = 64) in;
+PYRAMID_TO_WRITE(2, to)
 
 #if defined(LINES)
 
@@ -115,18 +129,18 @@ bool nearest_at(uint index, ivec2 pixel, out uint id, out uint nearest) {
 }
 
 void main() {
-    uvec2 size = uvec2(frame.viewport);
-    uint index = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    if (index >= size.x * size.y) return;
-    ivec2 pixel = ivec2(index % size.x, index / size.x);
+    ivec2 pixel = invocation_pixel();
+    if (!is_within(picture_size(), pixel)) return;
+    uint index = uint(pixel.y * picture_size().x + pixel.x);
     uint id, nearest;
     if (!nearest_at(index, pixel, id, nearest)) {
-        if (first_id() == 0) store_to(index, NO_SAMPLE);
+        if (first_id() == 0) store_to(pixel, NO_SAMPLE);
     } else if (id - first_id() < chunk.count) {
         Sample s = to_world_sample(sample_of(id - first_id(), pixel, nearest));
         s.id = id;
-        store_to(index, s);
+        store_to(pixel, s);
     }
 }
 
+#endif
 #endif

@@ -32,9 +32,8 @@ float alpha_of(uint i) {
 
 #ifdef COMPUTE
 
+#include "lib/pixel_group.glsl"
 #include "lib/pixels.glsl"
-
-layout(local_size_x = 64) in;
 
 vec4 fetch0(uint i, bool wide) {
     if (!wide) return vec4(sums0[i], vec3(0.0));
@@ -47,12 +46,11 @@ vec4 fetch1(uint i) {
 }
 
 void main() {
-    uint width = uint(frame.viewport.x), pixels = width * uint(frame.viewport.y);
-    uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    if (i >= pixels) return;
-    uvec2 at = uvec2(i % width, i / width);
+    ivec2 pixel = invocation_pixel(), size = picture_size();
+    if (any(greaterThanEqual(pixel, size))) return;
+    uint i = uint(pixel.y * size.x + pixel.x);
     vec4 s0 = fetch0(i, WIDE_SUMS0);
-    store_pixel(ivec2(at), normalize_pixel(vec2(at) + 0.5, visibility[i] != 0u, alpha_of(i), s0, fetch1(i)));
+    store_pixel(pixel, normalize_pixel(vec2(pixel) + 0.5, visibility[i] != 0u, alpha_of(i), s0, fetch1(i)));
 }
 
 #endif

@@ -27,12 +27,15 @@
 #endif
 #if defined(LINES) || defined(TRIANGLES)
 #include "lib/sums.glsl"
-#define LEVEL_0_ONLY
 #include "lib/pyramid.glsl"
 #include "lib/camera_rays.glsl"
 #endif
 
+#ifdef RASTER_POINTS
+#include "lib/pixel_group.glsl"
+#else
 layout(local_size_x = 64) in;
+#endif
 
 #if !defined(COUNT_ONLY) && !defined(RASTER_POINTS)
 // Projects a point of element i of the chunk to a pixel.
@@ -107,13 +110,12 @@ void main() {
 #include "lib/raster_points.glsl"
 
 void main() {
-    uvec2 size = uvec2(frame.viewport);
-    uint pixel = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    if (pixel >= size.x * size.y) return;
+    ivec2 pixel = invocation_pixel(), size = picture_size();
+    if (any(greaterThanEqual(pixel, size))) return;
     uint id;
     float distance;
-    bool found = raster_point(ivec2(pixel % size.x, pixel / size.x), id, distance);
-    nearest_points[pixel] = found ? nearest_point(id, distance) : NO_POINT;
+    bool found = raster_point(pixel, id, distance);
+    nearest_points[pixel.y * size.x + pixel.x] = found ? nearest_point(id, distance) : NO_POINT;
 }
 
 #else

@@ -1,21 +1,29 @@
-// Shade: lights the final level 0 pixel by pixel and writes picture, normal, depth and id (marroquim2008 §3.4).
+// Shade: lights the final level 0 pixel by pixel and writes picture, normal, depth and id (marroquim2008 §3.4). With RECONSTRUCT it does the
+// last step of push, too.
 #version 450
 #pragma variant LOOKUPS
 #pragma variant STORE_IDS
 #pragma variant LOOKUPS_STORE_IDS
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
 
 #ifdef COMPUTE
 
 #include "lib/frame.glsl"
+#include "lib/pixel_group.glsl"
 #include "lib/pyramid.glsl"
+#include "lib/level.glsl"
 #include "lib/camera_rays.glsl"
 #include "lib/shading.glsl"
 #include "lib/background.glsl"
 #include "lib/lattice.glsl"
 
-PYRAMID(2, final, readonly)
-DEFINE_LOAD(final)
+PYRAMID_TO_READ(2, final)
+PYRAMID_TO_READ(3, from)
+
+#include "lib/reconstruction.glsl"
+
+layout(constant_id = 48) const bool RECONSTRUCT = false; // level 0 is reconstructed here: push does not store it
 
 layout(constant_id = 25) const bool MATERIALS = false; // points have materials
 
@@ -35,12 +43,12 @@ layout(constant_id = 31) const bool COVERAGE = false; // α is the covered part 
 
 // Widening of a disc's variance for coverage, px²: push's widening at half the side of a pixel. Narrower discs leave holes; wider ones
 // reach beyond the outline.
-const float WIDENING = 0.0625;
+const float COVERAGE_WIDENING = 0.0625;
 
 // Mask of the pixel's samples inside the disc with this centre, px, which lies e px from the pixel's.
 uint covered_by(Sample s, vec2 centre, vec2 e) {
     uint mask = 0;
-    for (uint k = 0; k < SAMPLES; k++) mask |= uint(radii2(s, centre, sample_position(k) - e, WIDENING) <= 1.0) << k;
+    for (uint k = 0; k < SAMPLES; k++) mask |= uint(radii2(s, centre, sample_position(k) - e, COVERAGE_WIDENING) <= 1.0) << k;
     return mask;
 }
 
@@ -51,13 +59,13 @@ float coverage_of(ivec2 pixel) {
     bool inner = true;
     for (int k = 0; k < 9; k++) {
         ivec2 neighbour = pixel + ivec2(k % 3, k / 3) - 1;
-        if (is_within(0, neighbour)) inner = inner && load_final(sample_index(0, 0, neighbour)).near > 0.0;
+        if (is_within(picture_size(), neighbour)) inner = inner && load_final(neighbour).near > 0.0;
     }
     if (inner) return 1.0;
     for (int k = 0; k < 9; k++) {
         ivec2 neighbour = pixel + ivec2(k % 3, k / 3) - 1;
-        if (!is_within(0, neighbour)) continue;
-        Sample s = load_final(sample_index(0, 0, neighbour));
+        if (!is_within(picture_size(), neighbour)) continue;
+        Sample s = load_final(neighbour);
         vec2 e = vec2(neighbour - pixel) + s.displacement;
         if (s.near > 0.0) mask |= covered_by(s, level_centre(0, pixel) + e, e);
     }
@@ -65,9 +73,11 @@ float coverage_of(ivec2 pixel) {
 }
 
 void main() {
-    ivec2 pixel = invocation_pixel(0);
-    if (pixel.x < 0) return;
-    Sample s = load_final(uint(pixel.y) * uint(frame.viewport.x) + uint(pixel.x));
+    ivec2 pixel = invocation_pixel();
+    if (!is_within(picture_size(), pixel)) return;
+    Sample s;
+    if (RECONSTRUCT) s = reconstructed(pixel);
+    else s = load_final(pixel);
     vec4 image = frame.background;
     if (s.near > 0.0) {
         vec2 centre = vec2(pixel) + 0.5;

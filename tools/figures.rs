@@ -314,7 +314,7 @@ fn pyramid() -> Result<Canvas> {
     const SIDE: u32 = 224;
     let device = Device::open(&DeviceOptions::default())?;
     let scene = Scene::upload(&device, &scenes::open("scene:torus?points=3000&frequency=1")?)?;
-    let options = RenderOptions { size: [SIDE; 2], ..Default::default() };
+    let options = RenderOptions { size: [SIDE; 2], split: true, ..Default::default() };
     let mut renderer = Renderer::new(&device, options)?;
     let eye = dvec3(1.7, 3.1, 2.9);
     let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::Y, 38f64.to_radians(), 1.0, 0.1)?;

@@ -150,13 +150,23 @@ pub static COMPOSITE_NORMALS_IDS_FRAGMENT: Module = Module {
     push: size_of::<layout::Composite>() as u32,
 };
 
+/// The compute stage of `shaders-glsl/copy.glsl`.
+pub static COPY_COMPUTE: Module = Module {
+    name: "copy_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("copy_compute.spv"),
+    constants: &[17, 33, 38, 39],
+    resources: &[(&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
+    push: size_of::<layout::Step>() as u32,
+};
+
 /// The compute stage of `shaders-glsl/fetch.glsl`.
 pub static FETCH_COMPUTE: Module = Module {
     name: "fetch_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_compute.spv"),
     constants: &[0, 1, 5, 12, 13, 17, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
-    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST, false), (&resource::TO_DEPTHS, true), (&resource::TO_DISPLACEMENTS, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
+    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -166,7 +176,7 @@ pub static FETCH_LINES_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_lines_compute.spv"),
     constants: &[0, 17, 28, 29, 33, 34, 37, 38, 39],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::LINE_DIRECTIONS, false), (&resource::VERTEX_COLOURS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, false), (&resource::TO_DEPTHS, true), (&resource::TO_DISPLACEMENTS, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::LINE_DIRECTIONS, false), (&resource::VERTEX_COLOURS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -176,7 +186,7 @@ pub static FETCH_TRIANGLES_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_triangles_compute.spv"),
     constants: &[0, 17, 28, 29, 33, 34, 37, 38, 39],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::VERTEX_COLOURS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, false), (&resource::TO_DEPTHS, true), (&resource::TO_DISPLACEMENTS, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::VERTEX_COLOURS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -186,8 +196,18 @@ pub static FETCH_RASTER_POINTS_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_raster_points_compute.spv"),
     constants: &[0, 1, 5, 12, 13, 17, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
-    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST_ID, false), (&resource::TO_DEPTHS, true), (&resource::TO_DISPLACEMENTS, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
+    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST_ID, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
     push: size_of::<layout::Chunk>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/fetch.glsl`.
+pub static FETCH_EMPTY_COMPUTE: Module = Module {
+    name: "fetch_empty_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("fetch_empty_compute.spv"),
+    constants: &[17, 33, 34, 38, 39],
+    resources: &[(&resource::FRAME, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
+    push: 0,
 };
 
 /// The compute stage of `shaders-glsl/footprint.glsl`.
@@ -465,8 +485,8 @@ pub static PULL_COMPUTE: Module = Module {
     name: "pull_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("pull_compute.spv"),
-    constants: &[0, 17, 28, 33, 34, 38, 39],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TO_DEPTHS, true), (&resource::TO_DISPLACEMENTS, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true), (&resource::FROM_DEPTHS, false), (&resource::FROM_DISPLACEMENTS, false), (&resource::FROM_NORMALS, false), (&resource::FROM_COLOURS, false), (&resource::FROM_IDS, false)],
+    constants: &[0, 17, 28, 33, 34, 35, 38, 39],
+    resources: &[(&resource::VIEWS, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
 
@@ -475,8 +495,8 @@ pub static PUSH_COMPUTE: Module = Module {
     name: "push_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("push_compute.spv"),
-    constants: &[0, 17, 28, 32, 33, 34, 38, 39],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TO_DEPTHS, true), (&resource::TO_DISPLACEMENTS, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true), (&resource::FROM_DEPTHS, false), (&resource::FROM_DISPLACEMENTS, false), (&resource::FROM_NORMALS, false), (&resource::FROM_COLOURS, false), (&resource::FROM_IDS, false)],
+    constants: &[0, 17, 28, 32, 33, 34, 35, 38, 39],
+    resources: &[(&resource::VIEWS, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
 
@@ -525,9 +545,9 @@ pub static SHADE_COMPUTE: Module = Module {
     name: "shade_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 33, 34, 38],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::FINAL_DEPTHS, false), (&resource::FINAL_DISPLACEMENTS, false), (&resource::FINAL_NORMALS, false), (&resource::FINAL_COLOURS, false)],
-    push: 0,
+    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
+    push: size_of::<layout::Step>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/shade.glsl`.
@@ -535,9 +555,9 @@ pub static SHADE_LOOKUPS_COMPUTE: Module = Module {
     name: "shade_lookups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_lookups_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 33, 34, 36, 38, 39],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::FINAL_DEPTHS, false), (&resource::FINAL_DISPLACEMENTS, false), (&resource::FINAL_NORMALS, false), (&resource::FINAL_COLOURS, false), (&resource::FINAL_IDS, false)],
-    push: 0,
+    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
+    push: size_of::<layout::Step>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/shade.glsl`.
@@ -545,9 +565,9 @@ pub static SHADE_STORE_IDS_COMPUTE: Module = Module {
     name: "shade_store_ids_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_store_ids_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 33, 34, 38, 39],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::ID_OUTPUT, true), (&resource::FINAL_DEPTHS, false), (&resource::FINAL_DISPLACEMENTS, false), (&resource::FINAL_NORMALS, false), (&resource::FINAL_COLOURS, false), (&resource::FINAL_IDS, false)],
-    push: 0,
+    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::ID_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
+    push: size_of::<layout::Step>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/shade.glsl`.
@@ -555,9 +575,9 @@ pub static SHADE_LOOKUPS_STORE_IDS_COMPUTE: Module = Module {
     name: "shade_lookups_store_ids_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_lookups_store_ids_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 33, 34, 36, 38, 39],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::ID_OUTPUT, true), (&resource::FINAL_DEPTHS, false), (&resource::FINAL_DISPLACEMENTS, false), (&resource::FINAL_NORMALS, false), (&resource::FINAL_COLOURS, false), (&resource::FINAL_IDS, false)],
-    push: 0,
+    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::ID_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
+    push: size_of::<layout::Step>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/surface.glsl`.
@@ -672,7 +692,7 @@ pub mod constant {
     pub const COLOUR_OFFSET: u32 = 57;
     /// `COLOUR_STRIDE`, first in `shaders-glsl/attribute.glsl`.
     pub const COLOUR_STRIDE: u32 = 58;
-    /// `COMPACT`, first in `shaders-glsl/fetch.glsl`.
+    /// `COMPACT`, first in `shaders-glsl/copy.glsl`.
     pub const COMPACT: u32 = 33;
     /// `CONFETTI`, first in `shaders-glsl/attribute.glsl`.
     pub const CONFETTI: u32 = 16;
@@ -702,7 +722,7 @@ pub mod constant {
     pub const HOST_DEPTH: u32 = 40;
     /// `HOST_SAMPLES`, first in `shaders-glsl/seed.glsl`.
     pub const HOST_SAMPLES: u32 = 43;
-    /// `IDS`, first in `shaders-glsl/fetch.glsl`.
+    /// `IDS`, first in `shaders-glsl/copy.glsl`.
     pub const IDS: u32 = 39;
     /// `INSTANCED`, first in `shaders-glsl/attribute.glsl`.
     pub const INSTANCED: u32 = 37;
@@ -742,6 +762,8 @@ pub mod constant {
     pub const RADIUS_OFFSET: u32 = 55;
     /// `RADIUS_STRIDE`, first in `shaders-glsl/attribute.glsl`.
     pub const RADIUS_STRIDE: u32 = 56;
+    /// `RECONSTRUCT`, first in `shaders-glsl/shade.glsl`.
+    pub const RECONSTRUCT: u32 = 48;
     /// `SHADE_SPLATS`, first in `shaders-glsl/attribute.glsl`.
     pub const SHADE_SPLATS: u32 = 20;
     /// `SHADING`, first in `shaders-glsl/colour_map.glsl`.
@@ -758,11 +780,13 @@ pub mod constant {
     pub const SUM_NORMALS: u32 = 3;
     /// `TEXELS`, first in `shaders-glsl/shade.glsl`.
     pub const TEXELS: u32 = 36;
-    /// `TEXTURE`, first in `shaders-glsl/fetch.glsl`.
+    /// `TEXTURE`, first in `shaders-glsl/copy.glsl`.
     pub const TEXTURE: u32 = 38;
+    /// `TUBES`, first in `shaders-glsl/copy.glsl`.
+    pub const TUBES: u32 = 35;
     /// `TWO_SIDED`, first in `shaders-glsl/attribute.glsl`.
     pub const TWO_SIDED: u32 = 13;
-    /// `UNBOUNDED_COLOURS`, first in `shaders-glsl/fetch.glsl`.
+    /// `UNBOUNDED_COLOURS`, first in `shaders-glsl/copy.glsl`.
     pub const UNBOUNDED_COLOURS: u32 = 34;
     /// `UNCHECKED`, first in `shaders-glsl/attribute.glsl`.
     pub const UNCHECKED: u32 = 61;
@@ -1140,93 +1164,93 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `finalColours`, first in `shaders-glsl/shade.glsl`.
-    pub static FINAL_COLOURS: Resource = Resource {
-        name: "finalColours",
+    /// `final_quad0`, first in `shaders-glsl/push.glsl`.
+    pub static FINAL_QUAD0: Resource = Resource {
+        name: "final_quad0",
         set: 2,
-        binding: 3,
-        kind: DescriptorType::STORAGE_BUFFER,
+        binding: 5,
+        kind: DescriptorType::SAMPLED_IMAGE,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `finalDepths`, first in `shaders-glsl/shade.glsl`.
-    pub static FINAL_DEPTHS: Resource = Resource {
-        name: "finalDepths",
+    /// `final_quad1`, first in `shaders-glsl/push.glsl`.
+    pub static FINAL_QUAD1: Resource = Resource {
+        name: "final_quad1",
         set: 2,
-        binding: 0,
-        kind: DescriptorType::STORAGE_BUFFER,
+        binding: 6,
+        kind: DescriptorType::SAMPLED_IMAGE,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `finalDisplacements`, first in `shaders-glsl/shade.glsl`.
-    pub static FINAL_DISPLACEMENTS: Resource = Resource {
-        name: "finalDisplacements",
+    /// `final_quad2`, first in `shaders-glsl/push.glsl`.
+    pub static FINAL_QUAD2: Resource = Resource {
+        name: "final_quad2",
         set: 2,
-        binding: 1,
-        kind: DescriptorType::STORAGE_BUFFER,
+        binding: 7,
+        kind: DescriptorType::SAMPLED_IMAGE,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `finalIds`, first in `shaders-glsl/shade.glsl`.
-    pub static FINAL_IDS: Resource = Resource {
-        name: "finalIds",
+    /// `final_single0`, first in `shaders-glsl/push.glsl`.
+    pub static FINAL_SINGLE0: Resource = Resource {
+        name: "final_single0",
         set: 2,
-        binding: 4,
-        kind: DescriptorType::STORAGE_BUFFER,
+        binding: 8,
+        kind: DescriptorType::SAMPLED_IMAGE,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `finalNormals`, first in `shaders-glsl/shade.glsl`.
-    pub static FINAL_NORMALS: Resource = Resource {
-        name: "finalNormals",
+    /// `final_single1`, first in `shaders-glsl/push.glsl`.
+    pub static FINAL_SINGLE1: Resource = Resource {
+        name: "final_single1",
         set: 2,
-        binding: 2,
-        kind: DescriptorType::STORAGE_BUFFER,
+        binding: 9,
+        kind: DescriptorType::SAMPLED_IMAGE,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `fromColours`, first in `shaders-glsl/pull.glsl`.
-    pub static FROM_COLOURS: Resource = Resource {
-        name: "fromColours",
+    /// `from_quad0`, first in `shaders-glsl/copy.glsl`.
+    pub static FROM_QUAD0: Resource = Resource {
+        name: "from_quad0",
         set: 3,
-        binding: 3,
-        kind: DescriptorType::STORAGE_BUFFER,
+        binding: 5,
+        kind: DescriptorType::SAMPLED_IMAGE,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `fromDepths`, first in `shaders-glsl/pull.glsl`.
-    pub static FROM_DEPTHS: Resource = Resource {
-        name: "fromDepths",
+    /// `from_quad1`, first in `shaders-glsl/copy.glsl`.
+    pub static FROM_QUAD1: Resource = Resource {
+        name: "from_quad1",
         set: 3,
-        binding: 0,
-        kind: DescriptorType::STORAGE_BUFFER,
+        binding: 6,
+        kind: DescriptorType::SAMPLED_IMAGE,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `fromDisplacements`, first in `shaders-glsl/pull.glsl`.
-    pub static FROM_DISPLACEMENTS: Resource = Resource {
-        name: "fromDisplacements",
+    /// `from_quad2`, first in `shaders-glsl/copy.glsl`.
+    pub static FROM_QUAD2: Resource = Resource {
+        name: "from_quad2",
         set: 3,
-        binding: 1,
-        kind: DescriptorType::STORAGE_BUFFER,
+        binding: 7,
+        kind: DescriptorType::SAMPLED_IMAGE,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `fromIds`, first in `shaders-glsl/pull.glsl`.
-    pub static FROM_IDS: Resource = Resource {
-        name: "fromIds",
+    /// `from_single0`, first in `shaders-glsl/copy.glsl`.
+    pub static FROM_SINGLE0: Resource = Resource {
+        name: "from_single0",
         set: 3,
-        binding: 4,
-        kind: DescriptorType::STORAGE_BUFFER,
+        binding: 8,
+        kind: DescriptorType::SAMPLED_IMAGE,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `fromNormals`, first in `shaders-glsl/pull.glsl`.
-    pub static FROM_NORMALS: Resource = Resource {
-        name: "fromNormals",
+    /// `from_single1`, first in `shaders-glsl/copy.glsl`.
+    pub static FROM_SINGLE1: Resource = Resource {
+        name: "from_single1",
         set: 3,
-        binding: 2,
-        kind: DescriptorType::STORAGE_BUFFER,
+        binding: 9,
+        kind: DescriptorType::SAMPLED_IMAGE,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
@@ -1365,48 +1389,48 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
     };
 
-    /// `toColours`, first in `shaders-glsl/fetch.glsl`.
-    pub static TO_COLOURS: Resource = Resource {
-        name: "toColours",
-        set: 2,
-        binding: 3,
-        kind: DescriptorType::STORAGE_BUFFER,
-        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
-    };
-
-    /// `toDepths`, first in `shaders-glsl/fetch.glsl`.
-    pub static TO_DEPTHS: Resource = Resource {
-        name: "toDepths",
+    /// `to_image0`, first in `shaders-glsl/copy.glsl`.
+    pub static TO_IMAGE0: Resource = Resource {
+        name: "to_image0",
         set: 2,
         binding: 0,
-        kind: DescriptorType::STORAGE_BUFFER,
+        kind: DescriptorType::STORAGE_IMAGE,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `toDisplacements`, first in `shaders-glsl/fetch.glsl`.
-    pub static TO_DISPLACEMENTS: Resource = Resource {
-        name: "toDisplacements",
+    /// `to_image1`, first in `shaders-glsl/copy.glsl`.
+    pub static TO_IMAGE1: Resource = Resource {
+        name: "to_image1",
         set: 2,
         binding: 1,
-        kind: DescriptorType::STORAGE_BUFFER,
+        kind: DescriptorType::STORAGE_IMAGE,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `toIds`, first in `shaders-glsl/fetch.glsl`.
-    pub static TO_IDS: Resource = Resource {
-        name: "toIds",
-        set: 2,
-        binding: 4,
-        kind: DescriptorType::STORAGE_BUFFER,
-        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
-    };
-
-    /// `toNormals`, first in `shaders-glsl/fetch.glsl`.
-    pub static TO_NORMALS: Resource = Resource {
-        name: "toNormals",
+    /// `to_image2`, first in `shaders-glsl/copy.glsl`.
+    pub static TO_IMAGE2: Resource = Resource {
+        name: "to_image2",
         set: 2,
         binding: 2,
-        kind: DescriptorType::STORAGE_BUFFER,
+        kind: DescriptorType::STORAGE_IMAGE,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `to_image3`, first in `shaders-glsl/copy.glsl`.
+    pub static TO_IMAGE3: Resource = Resource {
+        name: "to_image3",
+        set: 2,
+        binding: 3,
+        kind: DescriptorType::STORAGE_IMAGE,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `to_image4`, first in `shaders-glsl/copy.glsl`.
+    pub static TO_IMAGE4: Resource = Resource {
+        name: "to_image4",
+        set: 2,
+        binding: 4,
+        kind: DescriptorType::STORAGE_IMAGE,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
@@ -1706,18 +1730,30 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Splat, key_disc) == 60);
     const _: () = assert!(std::mem::size_of::<Splat>() == 64);
 
-    /// `Step`, 8 bytes, first in `shaders-glsl/pull.glsl`.
+    /// `Step`, 44 bytes, first in `shaders-glsl/copy.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Step {
         /// Byte 0.
+        pub size: [i32; 2],
+        /// Byte 8.
+        pub to_origin: [i32; 2],
+        /// Byte 16.
+        pub from_origin: [i32; 2],
+        /// Byte 24.
+        pub adjacent_size: [i32; 2],
+        /// Byte 32.
+        pub adjacent_origin: [i32; 2],
+        /// Byte 40.
         pub level: u32,
-        /// Byte 4.
-        pub levels: u32,
     }
-    const _: () = assert!(std::mem::offset_of!(Step, level) == 0);
-    const _: () = assert!(std::mem::offset_of!(Step, levels) == 4);
-    const _: () = assert!(std::mem::size_of::<Step>() == 8);
+    const _: () = assert!(std::mem::offset_of!(Step, size) == 0);
+    const _: () = assert!(std::mem::offset_of!(Step, to_origin) == 8);
+    const _: () = assert!(std::mem::offset_of!(Step, from_origin) == 16);
+    const _: () = assert!(std::mem::offset_of!(Step, adjacent_size) == 24);
+    const _: () = assert!(std::mem::offset_of!(Step, adjacent_origin) == 32);
+    const _: () = assert!(std::mem::offset_of!(Step, level) == 40);
+    const _: () = assert!(std::mem::size_of::<Step>() == 44);
 
     /// `Subpass`, 16 bytes, first in `shaders-glsl/normalize.glsl`.
     #[repr(C)]

@@ -1,22 +1,20 @@
 // Pyramids of samples: a pixel of a level stores a disc of the surface (marroquim2008 §3). A pixel of level l covers 2^l × 2^l pixels of
 // the viewport; screen lengths are viewport pixels on all levels.
 
-#ifndef LEVEL_0_ONLY
-layout(constant_id = 17) const bool SUM_COLOURS = false; // samples have colours
-
-// Level to compute, and number of levels. Passes over a scene define LEVEL_0_ONLY and write level 0 only.
-layout(push_constant) uniform Step { uint level; uint levels; } pass;
-#endif
-
 layout(constant_id = 33) const bool COMPACT = false;           // samples are rounded to 24 bytes
 layout(constant_id = 34) const bool UNBOUNDED_COLOURS = false; // some colours may be above 1
 layout(constant_id = 38) const bool TEXTURE = false;           // samples have texture coordinates instead of colours
 layout(constant_id = 39) const bool IDS = false;               // samples have point ids
+layout(constant_id = 35) const bool TUBES = false;             // samples may be of tubes
 
+#include "lib/sums.glsl"
 #include "lib/compact.glsl"
 
-// Elements per sample in the buffers of depths, of normals, and of colours or coordinates.
-const uint DEPTH_PAIRS = COMPACT ? 1 : 2, NORMAL_WORDS = COMPACT ? 1 : 3, COLOUR_WORDS = TEXTURE ? 2 : SUM_COLOURS ? NORMAL_WORDS : 0;
+// Words of a sample, and the images that store them: four words a texel, then one.
+const uint COLOUR_WORDS = TEXTURE ? 2 : !SUM_COLOURS ? 0 : COMPACT ? 1 : 3;
+const uint ID_WORD = (COMPACT ? 5 : 9) + COLOUR_WORDS, WORDS = ID_WORD + (IDS ? 1 : 0);
+const uint QUADS = (WORDS + 1) / 4;
+const uint SINGLES = 4 * QUADS < WORDS ? WORDS - 4 * QUADS : 0;
 
 // Id of empty samples.
 const uint NOBODY = 0xffffffffu;
@@ -47,114 +45,109 @@ vec2 coordinate_offset(Sample s, Sample other) {
     return offset - floor(offset + 0.5);
 }
 
-ivec2 level_size(uint level) {
-    return (ivec2(frame.viewport) + (1 << level) - 1) >> level;
+// A sample's words, as the images of a pyramid store them (src/frame/pyramids.rs).
+//
+//     full      near, radius, displacement x y, normal x y z, far, depth, colour r g b or coordinates u v, id
+//     compact   near, displacement, radius and far − near, normal, depth, colour or coordinates u v, id
+//
+// The radius of a tube's sample is stored negated.
+struct Words {
+    uvec4 quads[3];
+    uint singles[2];
+};
+
+void set_word(inout Words words, uint at, uint word) {
+    if (at < 4 * QUADS) words.quads[at / 4][at % 4] = word;
+    else words.singles[at - 4 * QUADS] = word;
 }
 
-// Index of a level's first sample.
-uint level_start(uint level) {
-    uint start = 0;
-    for (uint l = 0; l < level; l++) {
-        ivec2 size = level_size(l);
-        start += uint(size.x * size.y);
-    }
-    return start;
+uint get_word(Words words, uint at) {
+    return at < 4 * QUADS ? words.quads[min(at / 4, 2)][at % 4] : words.singles[at - min(4 * QUADS, at)];
 }
+
+Words pack_sample(Sample s) {
+    Words words = Words(uvec4[3](uvec4(0), uvec4(0), uvec4(0)), uint[2](0, 0));
+    float radius = s.tube ? -s.radius : s.radius;
+    uvec3 colour = floatBitsToUint(TEXTURE ? vec3(s.coordinates, 0.0) : s.colour);
+    if (COMPACT) {
+        uint size = pack_halves(vec2(radius, 0.0)) | pack_length(max(s.far - s.near, 0.0)) << 16;
+        words.quads[0] = uvec4(floatBitsToUint(s.near), pack_halves(s.displacement), size, pack_direction(s.normal));
+        set_word(words, 4, floatBitsToUint(s.depth));
+        if (!TEXTURE) colour.x = UNBOUNDED_COLOURS ? pack_shared(s.colour) : pack_roots(s.colour);
+    } else {
+        words.quads[0] = floatBitsToUint(vec4(s.near, radius, s.displacement));
+        words.quads[1] = floatBitsToUint(vec4(s.normal, s.far));
+        set_word(words, 8, floatBitsToUint(s.depth));
+    }
+    const uint first = ID_WORD - COLOUR_WORDS;
+    if (COLOUR_WORDS > 0) set_word(words, first, colour.x);
+    if (COLOUR_WORDS > 1) set_word(words, first + 1, colour.y);
+    if (COLOUR_WORDS > 2) set_word(words, first + 2, colour.z);
+    if (IDS) set_word(words, ID_WORD, s.id);
+    return words;
+}
+
+// Empty samples are zeros, and are unpacked like others: divergent branches cost more than they skip.
+Sample unpack_sample(Words words) {
+    const uint first = ID_WORD - COLOUR_WORDS;
+    uvec3 bits = uvec3(0);
+    if (COLOUR_WORDS > 0) bits.x = get_word(words, first);
+    if (COLOUR_WORDS > 1) bits.y = get_word(words, first + 1);
+    if (COLOUR_WORDS > 2) bits.z = get_word(words, first + 2);
+    uint id = IDS ? get_word(words, ID_WORD) : NOBODY;
+    vec3 colour = uintBitsToFloat(bits);
+    if (COMPACT) {
+        uvec4 q = words.quads[0];
+        float near = uintBitsToFloat(q.x), depth = uintBitsToFloat(get_word(words, 4));
+        if (!TEXTURE) colour = UNBOUNDED_COLOURS ? unpack_shared(bits.x) : unpack_roots(bits.x);
+        bool tube = TUBES && (q.z >> 15 & 1) != 0;
+        return Sample(near, near + unpack_length(q.z >> 16), depth, abs(unpackHalf2x16(q.z).x), unpackHalf2x16(q.y), unpack_direction(q.w), colour,
+                      tube, colour.xy, id);
+    }
+    vec4 disc = uintBitsToFloat(words.quads[0]), surface = uintBitsToFloat(words.quads[1]);
+    bool tube = TUBES && words.quads[0].y >> 31 != 0;
+    return Sample(disc.x, surface.w, uintBitsToFloat(get_word(words, 8)), abs(disc.y), disc.zw, surface.xyz, colour, tube, colour.xy, id);
+}
+
+// load_NAME: the sample at a texel of the pyramid that is read at descriptor set SET; words_NAME: its words.
+#define PYRAMID_TO_READ(SET, NAME)                                                                                 \
+    layout(set = SET, binding = 5) uniform utexture2D NAME##_quad0;                                                  \
+    layout(set = SET, binding = 6) uniform utexture2D NAME##_quad1;                                                  \
+    layout(set = SET, binding = 7) uniform utexture2D NAME##_quad2;                                                  \
+    layout(set = SET, binding = 8) uniform utexture2D NAME##_single0;                                                \
+    layout(set = SET, binding = 9) uniform utexture2D NAME##_single1;                                                \
+    Words words_##NAME(ivec2 at) {                                                                                   \
+        Words words = Words(uvec4[3](texelFetch(NAME##_quad0, at, 0), uvec4(0), uvec4(0)), uint[2](0, 0));             \
+        if (QUADS > 1) words.quads[1] = texelFetch(NAME##_quad1, at, 0);                                              \
+        if (QUADS > 2) words.quads[2] = texelFetch(NAME##_quad2, at, 0);                                              \
+        if (SINGLES > 0) words.singles[0] = texelFetch(NAME##_single0, at, 0).r;                                       \
+        if (SINGLES > 1) words.singles[1] = texelFetch(NAME##_single1, at, 0).r;                                       \
+        return words;                                                                                                \
+    }                                                                                                                \
+    Sample load_##NAME(ivec2 at) { return unpack_sample(words_##NAME(at)); }
+
+// store_NAME: stores a sample at a texel of the pyramid that is written at descriptor set SET; store_words_NAME: from its words.
+#define PYRAMID_TO_WRITE(SET, NAME)                                                                                \
+    layout(set = SET, binding = 0, rgba32ui) writeonly uniform uimage2D NAME##_image0;                               \
+    layout(set = SET, binding = 1, rgba32ui) writeonly uniform uimage2D NAME##_image1;                               \
+    layout(set = SET, binding = 2, rgba32ui) writeonly uniform uimage2D NAME##_image2;                               \
+    layout(set = SET, binding = 3, r32ui) writeonly uniform uimage2D NAME##_image3;                                  \
+    layout(set = SET, binding = 4, r32ui) writeonly uniform uimage2D NAME##_image4;                                  \
+    void store_words_##NAME(ivec2 at, Words words) {                                                                 \
+        imageStore(NAME##_image0, at, words.quads[0]);                                                               \
+        if (QUADS > 1) imageStore(NAME##_image1, at, words.quads[1]);                                                 \
+        if (QUADS > 2) imageStore(NAME##_image2, at, words.quads[2]);                                                 \
+        if (SINGLES > 0) imageStore(NAME##_image3, at, uvec4(words.singles[0]));                                       \
+        if (SINGLES > 1) imageStore(NAME##_image4, at, uvec4(words.singles[1]));                                       \
+    }                                                                                                                \
+    void store_##NAME(ivec2 at, Sample s) { store_words_##NAME(at, pack_sample(s)); }
 
 // Centre of a pixel of a level, px.
 vec2 level_centre(uint level, ivec2 at) {
     return (vec2(at) + 0.5) * float(1u << level);
 }
 
-bool is_within(uint level, ivec2 at) {
-    return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, level_size(level)));
+// Whether a level of this size has this pixel.
+bool is_within(ivec2 size, ivec2 at) {
+    return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, size));
 }
-
-// A sample in the bits of a pyramid's buffers; src/frame/pyramids.rs has their formats.
-struct PackedSample {
-    uvec4 depths;       // near, far, depth, radius; compact: near, depth
-    uvec2 displacement; // displacement; compact: as halves, then radius and far − near
-    uvec3 normal;       // compact: octahedral
-    uvec3 colour;       // if samples have colours; compact: square roots, or with a shared exponent if some may be above 1; or the coordinates
-    uint id;            // if samples have ids
-};
-
-// The radius of a tube's sample is stored negated.
-PackedSample pack_sample(Sample s) {
-    float radius = s.tube ? -s.radius : s.radius;
-    uvec3 colour = floatBitsToUint(TEXTURE ? vec3(s.coordinates, 0.0) : s.colour);
-    if (!COMPACT) {
-        vec4 depths = vec4(s.near, s.far, s.depth, radius);
-        return PackedSample(floatBitsToUint(depths), floatBitsToUint(s.displacement), floatBitsToUint(s.normal), colour, s.id);
-    }
-    uvec4 depths = uvec4(floatBitsToUint(s.near), floatBitsToUint(s.depth), 0, 0);
-    uint size = pack_halves(vec2(radius, 0.0)) | pack_length(max(s.far - s.near, 0.0)) << 16;
-    if (!TEXTURE) colour.x = UNBOUNDED_COLOURS ? pack_shared(s.colour) : pack_roots(s.colour);
-    return PackedSample(depths, uvec2(pack_halves(s.displacement), size), uvec3(pack_direction(s.normal), 0, 0), colour, s.id);
-}
-
-// Empty samples are zeros, and are unpacked like others: divergent branches cost more than they skip.
-Sample unpack_sample(PackedSample p) {
-    vec4 depths = uintBitsToFloat(p.depths);
-    vec3 colour = uintBitsToFloat(p.colour);
-    if (!COMPACT) {
-        bool tube = p.depths.w >> 31 != 0;
-        return Sample(depths.x, depths.y, depths.z, abs(depths.w), uintBitsToFloat(p.displacement), uintBitsToFloat(p.normal), colour, tube,
-                      colour.xy, p.id);
-    }
-    bool tube = (p.displacement.y >> 15 & 1) != 0;
-    float far = depths.x + unpack_length(p.displacement.y >> 16), radius = abs(unpackHalf2x16(p.displacement.y).x);
-    if (!TEXTURE) colour = UNBOUNDED_COLOURS ? unpack_shared(p.colour.x) : unpack_roots(p.colour.x);
-    return Sample(depths.x, far, depths.y, radius, unpackHalf2x16(p.displacement.x), unpack_direction(p.normal.x), colour, tube, colour.xy, p.id);
-}
-
-// Buffers of the pyramid at descriptor set SET: all samples, level by level, fine to coarse. Passes write the pyramid of set 2, `to`, and
-// read that of set 3, `from`; shade reads `final` at set 2.
-#define PYRAMID(SET, NAME, ACCESS)                                                                         \
-    layout(set = SET, binding = 0, std430) ACCESS buffer NAME##Depths { uvec2 NAME##_depths[]; };          \
-    layout(set = SET, binding = 1, std430) ACCESS buffer NAME##Displacements { uvec2 NAME##_displacements[]; };          \
-    layout(set = SET, binding = 2, std430) ACCESS buffer NAME##Normals { uint NAME##_normals[]; };         \
-    layout(set = SET, binding = 3, std430) ACCESS buffer NAME##Colours { uint NAME##_colours[]; };         \
-    layout(set = SET, binding = 4, std430) ACCESS buffer NAME##Ids { uint NAME##_ids[]; };
-
-// load_NAME: loads sample i of a pyramid.
-#define DEFINE_LOAD(NAME)                                                                                       \
-    Sample load_##NAME(uint i) {                                                                           \
-        PackedSample p = PackedSample(uvec4(0), NAME##_displacements[i], uvec3(0), uvec3(0), NOBODY);                         \
-        p.depths.xy = NAME##_depths[DEPTH_PAIRS * i];                                                           \
-        if (DEPTH_PAIRS > 1) p.depths.zw = NAME##_depths[DEPTH_PAIRS * i + 1];                                       \
-        for (uint k = 0; k < NORMAL_WORDS; k++) p.normal[k] = NAME##_normals[NORMAL_WORDS * i + k];                      \
-        for (uint k = 0; k < COLOUR_WORDS; k++) p.colour[k] = NAME##_colours[COLOUR_WORDS * i + k];        \
-        if (IDS) p.id = NAME##_ids[i];                                                                     \
-        return unpack_sample(p);                                                                        \
-    }
-
-// store_NAME: stores sample i of a pyramid.
-#define DEFINE_STORE(NAME)                                                                                       \
-    void store_##NAME(uint i, Sample s) {                                                                  \
-        PackedSample p = pack_sample(s);                                                                           \
-        NAME##_displacements[i] = p.displacement;                                                                        \
-        NAME##_depths[DEPTH_PAIRS * i] = p.depths.xy;                                                           \
-        if (DEPTH_PAIRS > 1) NAME##_depths[DEPTH_PAIRS * i + 1] = p.depths.zw;                                       \
-        for (uint k = 0; k < NORMAL_WORDS; k++) NAME##_normals[NORMAL_WORDS * i + k] = p.normal[k];                      \
-        for (uint k = 0; k < COLOUR_WORDS; k++) NAME##_colours[COLOUR_WORDS * i + k] = p.colour[k];        \
-        if (IDS) NAME##_ids[i] = p.id;                                                                     \
-    }
-
-uint sample_index(uint level, uint start, ivec2 at) {
-    return start + uint(at.y * level_size(level).x + at.x);
-}
-
-#ifndef LEVEL_0_ONLY
-
-// Declared before its size is used, which is 1 otherwise.
-layout(local_size_x = 64) in;
-
-// Pixel of this invocation; below 0 beyond the level.
-ivec2 invocation_pixel(uint level) {
-    ivec2 size = level_size(level);
-    uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    return i < uint(size.x * size.y) ? ivec2(i % uint(size.x), i / uint(size.x)) : ivec2(-1);
-}
-
-#endif

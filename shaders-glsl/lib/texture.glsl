@@ -36,8 +36,8 @@ vec2 texture_step(ivec2 at, ivec2 step, Sample centre) {
     float count = 0.0;
     for (int side = -1; side <= 1; side += 2) {
         ivec2 position = at + side * step;
-        if (!is_within(0, position)) continue;
-        Sample other = load_final(sample_index(0, 0, position));
+        if (!is_within(picture_size(), position)) continue;
+        Sample other = load_final(position);
         bool same_surface = other.near > 0.0 && other.near <= centre.far && centre.near <= other.far && other.tube == centre.tube;
         if (!same_surface) continue;
         sum += float(side) * coordinate_offset(other, centre);

@@ -80,7 +80,7 @@ fn remedy(error: &Error) -> &'static str {
         Error::Usage(text) if text.contains("normalization weights: capture") => {
             " (`surfel convert --weights` captures them)"
         }
-        Error::Usage(text) if text.contains("choose half precision") => " (--half is half precision)",
+        Error::Usage(text) if text.starts_with("the pyramids of a picture") => " with --size",
         Error::NoDevice(text) if text.ends_with("choose another device") => " with --device",
         Error::NoWindow(_) => "; `surfel render` needs no display",
         _ if error.is_device_lost() => {

@@ -161,17 +161,26 @@ fn check_colours(args: &Render, colouring: Option<&Colouring>, out: &Output) -> 
     }
 }
 
-/// The time of the pass that does all stages over that of the stages apart, in words.
+/// Passes that do several stages, and the passes of these stages in split frames.
+const FUSED: [(&[&str], &[&str], &str); 2] = [
+    (
+        &["surface"],
+        &["visibility", "attribute", "normalize"],
+        "surface / (visibility + attribute + normalize)",
+    ),
+    (&["push", "shade"], &["push", "shade"], "push and shade with level 0 in shade / in push"),
+];
+
+/// The time of the passes that do several stages over that of the stages apart, in words.
 fn ratio(fused: &Times, split: &Times) -> String {
     let sum = |times: &Times, names: &[&str]| -> f64 {
         let wanted = times.passes().filter(|(label, _)| names.contains(label));
         wanted.map(|(_, statistics)| statistics.median).sum()
     };
-    let (together, apart) = (sum(fused, &["surface"]), sum(split, &["visibility", "attribute", "normalize"]));
-    if together > 0.0 && apart > 0.0 {
-        format!("surface / (visibility + attribute + normalize): {:.2}", together / apart)
-    } else {
-        "the device has no timestamps, or the method has no such stages".into()
+    let sums = FUSED.map(|(together, apart, name)| (sum(fused, together), sum(split, apart), name));
+    match sums.into_iter().find(|(together, apart, _)| *together > 0.0 && *apart > 0.0) {
+        Some((together, apart, name)) => format!("{name}: {:.2}", together / apart),
+        None => "the device has no timestamps, or the method has no such stages".into(),
     }
 }
 

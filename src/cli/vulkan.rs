@@ -83,7 +83,7 @@ struct Split {
 impl Split {
     fn new(device: &Arc<Device>, fused: &Renderer, options: RenderOptions) -> Result<Self> {
         if fused.rasterizer() != Some(Rasterizer::Compute) {
-            let text = "--times=split is of passes over tiles, which this frame has none of: choose --rasterizer compute";
+            let text = "--times=split is of passes over tiles or of push and shade, which this frame has none of: choose --rasterizer compute";
             return Err(Error::Usage(text.into()));
         }
         let renderer = Renderer::new(device, RenderOptions { split: true, ..options })?;

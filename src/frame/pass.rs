@@ -26,8 +26,6 @@ pub struct Pass {
 
 /// The pipelines of a pass.
 pub enum Programs {
-    /// None: the pass copies.
-    None,
     /// One set for all scenes of a frame.
     OfFrame(fn(&Variant) -> Vec<Program>),
     /// One set per scene.
@@ -48,8 +46,8 @@ pub enum Commands {
 pub struct StepContext<'a> {
     /// Its only pipeline.
     pub pipeline: Option<&'a crate::vk::ComputePipeline>,
-    /// Descriptor set 1, if it has a pipeline.
-    pub targets: Option<&'a crate::vk::DescriptorSet>,
+    /// Descriptor set 1.
+    pub targets: &'a crate::vk::DescriptorSet,
     /// The frame.
     pub frame: &'a Frame<'a>,
 }

@@ -83,7 +83,6 @@ impl Pipelines {
         scenes: &[SceneVariant],
     ) -> Result<Vec<PassPipelines>> {
         match pass.programs {
-            Programs::None => Ok(Vec::new()),
             Programs::OfFrame(programs) => {
                 if let Some(pipelines) = self.frame_pipelines.get(&(key(pass), *variant)) {
                     return Ok(vec![pipelines.clone()]);
@@ -213,7 +212,10 @@ impl Pipelines {
                 }
                 None => targets::shader_resources(variant),
             },
-            _ => pyramids::shader_resources(variant),
+            _ => {
+                let written = declared().any(|resource| resource == &shaders::resource::TO_IMAGE0);
+                pyramids::shader_resources(variant, set == 2 && written)
+            }
         };
         let resources = |set| {
             let mut list = resources(set);

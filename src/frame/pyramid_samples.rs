@@ -1,9 +1,10 @@
 //! Readback of pyramids.
 
 use super::compact;
-use super::pyramids::{ATTRIBUTES, Pyramid, Pyramids};
-use crate::error::Result;
-use crate::vk::{Access, Buffer, Commands, Device, pixel_bytes};
+use super::pyramids::{Pyramid, Pyramids, WordFormat};
+use crate::error::{Error, Result};
+use crate::settings::Precision;
+use crate::vk::{Access, Buffer, Commands, Device, Image};
 use std::sync::Arc;
 
 /// A pixel of a pyramid level, as in `lib/pyramid.glsl`.
@@ -40,93 +41,108 @@ pub struct PyramidLevel {
     pub samples: Vec<Option<PyramidSample>>,
 }
 
-/// Words of the attribute buffers, each with its words per sample.
-type Words = [(usize, Vec<u32>); ATTRIBUTES];
-
-impl PyramidSample {
-    /// Decodes the words of a sample.
-    fn of(words: [&[u32]; ATTRIBUTES], unbounded_colours: bool) -> Option<Self> {
-        match words {
-            [&[near, depth], &[displacement, size], &[normal], colour, id] => {
-                let near = f32::from_bits(near);
-                let [radius, _] = compact::halves(size);
-                let known = Self {
-                    near,
-                    far: near + compact::length(size >> 16),
-                    depth: f32::from_bits(depth),
-                    radius: radius.abs(),
-                    displacement: compact::halves(displacement),
-                    normal: compact::direction(normal),
-                    tube: size >> 15 & 1 != 0,
-                    colour: match (colour, unbounded_colours) {
-                        (&[bits], true) => Some(compact::shared(bits)),
-                        (&[bits], false) => Some(compact::roots(bits)),
-                        _ => None,
-                    },
-                    coordinates: all(colour.iter().copied().map(f32::from_bits)),
-                    id: id.first().copied(),
-                };
-                (near != 0.0).then_some(known)
-            }
-            _ => Self::of_floats(words),
-        }
-    }
-
-    fn of_floats(words: [&[u32]; ATTRIBUTES]) -> Option<Self> {
-        let id = words[4].first().copied();
-        let [depths, displacement, normal, colour, _] =
-            words.map(|words| words.iter().copied().map(f32::from_bits));
-        let [near, far, depth, radius] = all(depths)?;
-        let (tube, radius) = (radius.is_sign_negative(), radius.abs());
-        let (displacement, normal) = (all(displacement)?, all(normal)?);
-        let (colour, coordinates) = (all(colour.clone()), all(colour));
-        let known = Self { near, far, depth, radius, displacement, normal, tube, colour, coordinates, id };
-        (near != 0.0).then_some(known)
-    }
+/// The words of all texels of a pyramid, those of a texel one after the other.
+struct Texels {
+    words: Vec<u32>,
+    width: u32,
 }
 
-/// The values as an array, if there are exactly `N`.
-fn all<const N: usize>(values: impl Iterator<Item = f32>) -> Option<[f32; N]> {
-    values.collect::<Vec<_>>().try_into().ok()
+impl PyramidSample {
+    /// Decodes the words of a sample (`lib/pyramid.glsl`).
+    fn of(words: &[u32], format: WordFormat) -> Option<Self> {
+        let float = |i: usize| f32::from_bits(words[i]);
+        let first = format.before_colour() as usize;
+        let mut known = match format.precision {
+            Precision::Full => Self {
+                near: float(0),
+                radius: float(1).abs(),
+                tube: words[1] >> 31 != 0,
+                displacement: [float(2), float(3)],
+                normal: [float(4), float(5), float(6)],
+                far: float(7),
+                depth: float(8),
+                colour: (format.colour == 3).then(|| [0, 1, 2].map(|channel| float(first + channel))),
+                coordinates: None,
+                id: None,
+            },
+            Precision::Half => Self {
+                near: float(0),
+                displacement: compact::halves(words[1]),
+                radius: compact::halves(words[2])[0].abs(),
+                tube: words[2] >> 15 & 1 != 0,
+                far: float(0) + compact::length(words[2] >> 16),
+                normal: compact::direction(words[3]),
+                depth: float(4),
+                colour: (format.colour == 1).then(|| match format.unbounded_colours {
+                    true => compact::shared(words[first]),
+                    false => compact::roots(words[first]),
+                }),
+                coordinates: None,
+                id: None,
+            },
+        };
+        known.coordinates = format.coordinates.then(|| [float(first), float(first + 1)]);
+        known.id = format.ids.then(|| words[format.words() as usize - 1]);
+        (known.near != 0.0).then_some(known)
+    }
 }
 
 impl Pyramid {
-    fn read(&self, device: &Arc<Device>) -> Result<Words> {
-        let mut words: Words = Default::default();
-        for (attribute, read) in self.attributes.iter().zip(&mut words) {
-            let Some(attribute) = attribute else { continue };
-            let size = attribute.buffer.size();
-            let target = Buffer::readback(device, "read pyramid", size)?;
-            Commands::new(device, false)?.run(|rec| {
-                let uses = [attribute.buffer.with(Access::COPY_READ), target.with(Access::COPY_WRITE)];
-                rec.pass("read pyramid", &uses).copy(&attribute.buffer, &target, 0, size);
-                rec.wait(&[target.with(Access::HOST_READ)]);
-            })?;
-            *read =
-                (pixel_bytes(attribute.format) as usize / 4, bytemuck::pod_collect_to_vec(target.bytes()));
-        }
-        Ok(words)
+    fn read_texels(&self, device: &Arc<Device>) -> Result<Texels> {
+        let images = self.images.iter().map(|(_, image)| image);
+        let buffer = |image: &Image| {
+            let [width, height] = image.size().map(u64::from);
+            Buffer::readback(device, "read pyramid", width * height * image.pixel_bytes())
+        };
+        let buffers = images.clone().map(buffer).collect::<Result<Vec<_>>>()?;
+        Commands::new(device, false)?.run(|rec| {
+            rec.assume_layouts(&self.with(Access::COMPUTE_READ).collect::<Vec<_>>());
+            let read = images.clone().map(|image| image.with(Access::COPY_READ));
+            let written = buffers.iter().map(|buffer| buffer.with(Access::COPY_WRITE));
+            let mut enc = rec.pass("read pyramid", &read.chain(written).collect::<Vec<_>>());
+            images.clone().zip(&buffers).for_each(|(image, buffer)| enc.copy_image(image, buffer));
+            drop(enc);
+            rec.wait(&buffers.iter().map(|buffer| buffer.with(Access::HOST_READ)).collect::<Vec<_>>());
+        })?;
+        let images: Vec<_> = images.map(|image| (image.pixel_bytes() as usize / 4, image.size())).collect();
+        let planes: Vec<Vec<u32>> =
+            buffers.iter().map(|buffer| bytemuck::pod_collect_to_vec(buffer.bytes())).collect();
+        let [width, height] = images.first().map_or([0; 2], |(_, size)| *size);
+        let words = (0..(width * height) as usize).flat_map(|texel| {
+            let of_texel = |((words, _), plane): (&(usize, _), _)| {
+                let plane: &Vec<u32> = plane;
+                plane[words * texel..words * (texel + 1)].to_vec()
+            };
+            images.iter().zip(&planes).flat_map(of_texel).collect::<Vec<_>>()
+        });
+        Ok(Texels { words: words.collect(), width })
     }
 }
 
 impl Pyramids {
     /// Reads back the levels of the last frame, fine to coarse: pulled and pushed.
     pub fn read(&self, device: &Arc<Device>) -> Result<[Vec<PyramidLevel>; 2]> {
-        let [first, second] = [0, 1].map(|i| self.pyramids[i].read(device));
+        if self.finest_pushed() > 0 {
+            let text = "the frame did not store level 0 of the pushed pyramid: choose RenderOptions::split";
+            return Err(Error::Usage(text.into()));
+        }
+        let [first, second] = [0, 1].map(|i| self.pyramids[i].read_texels(device));
         let pyramids = [first?, second?];
         let levels = |pyramid_of: &dyn Fn(u32) -> usize| {
-            (0..self.levels()).map(|level| self.level_of(&pyramids[pyramid_of(level)], level)).collect()
+            (0..self.levels.count()).map(|level| self.level_of(&pyramids[pyramid_of(level)], level)).collect()
         };
         // Pulled levels are in the pyramid that push reads.
         Ok([levels(&|level| self.storage.push(level)[0]), levels(&|level| self.storage.push(level)[1])])
     }
 
-    fn level_of(&self, pyramid: &Words, level: u32) -> PyramidLevel {
-        let sample = |i: u64| {
-            let i = i as usize;
-            let words = pyramid.each_ref().map(|(count, words)| &words[count * i..count * (i + 1)]);
-            PyramidSample::of(words, self.unbounded_colours())
+    fn level_of(&self, pyramid: &Texels, level: u32) -> PyramidLevel {
+        let ([x, y], size) = (self.levels.origin(level), self.levels.size_of(level));
+        let per_texel = self.words.stored_words();
+        let sample = |row: u32, column: u32| {
+            let texel = ((y + row) * pyramid.width + x + column) as usize;
+            PyramidSample::of(&pyramid.words[per_texel * texel..per_texel * (texel + 1)], self.words)
         };
-        PyramidLevel { size: self.level_size(level), samples: self.level_range(level).map(sample).collect() }
+        let samples = (0..size[1]).flat_map(|row| (0..size[0]).map(move |column| (row, column)));
+        PyramidLevel { size, samples: samples.map(|(row, column)| sample(row, column)).collect() }
     }
 }

@@ -1,162 +1,255 @@
-//! Pyramids of pull–push: two pyramids of samples, an attribute buffer per group of attributes (`lib/pyramid.glsl`).
+//! Pyramids of pull–push: two pyramids of samples, whose levels lie side by side in images (`lib/pyramid.glsl`).
 
-use super::recording::grid_over;
+use super::recording::grid_over_pixels;
 use super::renderer::RenderOptions;
 use super::resource::Resource;
-use super::targets::{PerPixel, TargetInfo};
+use super::targets::{PerPixel, TargetInfo, pixels_of};
 use super::variant::Variant;
 use crate::error::Result;
 use crate::settings::Precision;
 use crate::settings::pull_push::Storage;
+use crate::vk::shaders::layout::Step;
 use crate::vk::shaders::{self, resource};
-use crate::vk::{Access, Binding, Buffer, Capabilities, DescriptorSet, Device, Encoder, Use, pixel_bytes};
+use crate::vk::{Access, Binding, Capabilities, DescriptorSet, Device, Image, ImageUse, Use, pixel_bytes};
 use ash::vk::Format;
-use std::ops::Range;
 use std::sync::Arc;
 
 /// The pyramids of pull–push.
 pub struct Pyramids {
-    // Drop order: sets before the buffers in them.
-    /// Descriptor sets 2 and 3 of each.
-    pub sets: [DescriptorSet; 2],
     /// The pyramids, in the roles that [`Storage`] gives them.
     pub pyramids: [Pyramid; 2],
     /// Assignment of levels to pyramids.
     pub storage: Storage,
-    /// Size of the viewport, px.
+    /// Levels of the picture's size.
+    pub levels: Levels,
+    /// Words of a sample.
+    pub(super) words: WordFormat,
+}
+
+/// Samples of levels, from the finest that it has to the coarsest.
+pub struct Pyramid {
+    // Drop order: sets before the images in them.
+    /// Descriptor set 2 of passes that write it.
+    pub written: DescriptorSet,
+    /// Descriptor set 3, or 2, of passes that only read it.
+    pub read: DescriptorSet,
+    /// Four words of each sample, or one.
+    pub(super) images: Vec<(&'static str, Image)>,
+    /// Finest level.
+    pub(super) finest: u32,
+    /// Its levels, the finest as level 0.
+    levels: Levels,
+}
+
+/// The levels of pyramids. Each has half the side of the finer one, rounded up; the last has one pixel.
+///
+/// ```text
+/// wide pictures   0 0 0 0      others   0 0 1
+///                 0 0 0 0               0 0 1
+///                 1 1 2 3               0 0 2
+///                 1 1                   0 0 3
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Levels {
+    /// Size of level 0, px.
     size: [u32; 2],
 }
 
-/// Samples of all levels, fine to coarse.
-pub struct Pyramid {
-    /// Attributes that the scene lacks have no buffer.
-    pub(crate) attributes: [Option<AttributeBuffer>; ATTRIBUTES],
+/// What the words of a sample are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct WordFormat {
+    pub precision: Precision,
+    pub unbounded_colours: bool,
+    /// Words of the colour or of texture coordinates.
+    pub colour: u32,
+    pub coordinates: bool,
+    pub ids: bool,
 }
 
-/// Buffer of one group of attributes of all samples.
-pub(crate) struct AttributeBuffer {
-    pub name: &'static str,
-    /// Format of a sample.
-    pub format: Format,
-    pub buffer: Buffer,
-}
+/// Most images of a pyramid: three of four words a texel, two of one.
+const IMAGES: usize = 5;
 
-/// Most attribute buffers of a pyramid, one per binding: depths, displacements, normals, colours or texture coordinates, point ids.
-pub(crate) const ATTRIBUTES: usize = 5;
-
-/// Resources of the attribute buffers in set 2; set 3 has the same bindings.
-const BINDINGS: [&shaders::Resource; ATTRIBUTES] = [
-    &resource::TO_DEPTHS,
-    &resource::TO_DISPLACEMENTS,
-    &resource::TO_NORMALS,
-    &resource::TO_COLOURS,
-    &resource::TO_IDS,
-];
-
-/// Formats of a pyramid's attribute buffers in frames of `variant`.
-fn formats(variant: &Variant) -> [Option<Format>; ATTRIBUTES] {
-    let [depths, displacements, normals, colours, ids] = match variant.precision {
-        Precision::Full => FULL,
-        Precision::Half => compact(variant.unbounded_colours),
-    };
-    // With a texture, samples have coordinates instead.
-    let coordinates = variant.texture.map(|_| Format::R32G32_SFLOAT);
-    let colours = coordinates.or_else(|| variant.colours.then_some(colours));
-    [Some(depths), Some(displacements), Some(normals), colours, variant.has_ids().then_some(ids)]
-}
-
-/// Index of the colour buffer.
-const COLOURS: usize = 3;
-
-/// Full precision: 48 bytes per sample, 36 without colours, and 4 for an id.
-const FULL: [Format; ATTRIBUTES] = [
-    Format::R32G32B32A32_SFLOAT,
-    Format::R32G32_SFLOAT,
-    Format::R32G32B32_SFLOAT,
-    Format::R32G32B32_SFLOAT,
+/// Format of each image.
+const FORMATS: [Format; IMAGES] = [
+    Format::R32G32B32A32_UINT,
+    Format::R32G32B32A32_UINT,
+    Format::R32G32B32A32_UINT,
+    Format::R32_UINT,
     Format::R32_UINT,
 ];
 
-/// Compact formats (`lib/compact.glsl`): 24 bytes per sample, 20 without colours, and 4 for an id. Displacement and radius are half floats,
-/// far − near has a longer exponent; bounded colours are square roots.
-fn compact(unbounded_colours: bool) -> [Format; ATTRIBUTES] {
-    let colours =
-        if unbounded_colours { Format::E5B9G9R9_UFLOAT_PACK32 } else { Format::A2B10G10R10_UNORM_PACK32 };
-    [Format::R32G32_SFLOAT, Format::R32G32_UINT, Format::R16G16_SNORM, colours, Format::R32_UINT]
-}
+/// Resources of the images in set 2, as storage images.
+const WRITTEN: [&shaders::Resource; IMAGES] = [
+    &resource::TO_IMAGE0,
+    &resource::TO_IMAGE1,
+    &resource::TO_IMAGE2,
+    &resource::TO_IMAGE3,
+    &resource::TO_IMAGE4,
+];
 
-fn storage(variant: &Variant) -> Storage {
-    variant.pull_push.map_or(Storage::Apart, |pull_push| pull_push.storage)
-}
+/// Resources of the images in sets 2 and 3, as sampled images.
+const READ: [&shaders::Resource; IMAGES] = [
+    &resource::FROM_QUAD0,
+    &resource::FROM_QUAD1,
+    &resource::FROM_QUAD2,
+    &resource::FROM_SINGLE0,
+    &resource::FROM_SINGLE1,
+];
 
-/// Debug names of both pyramids' attribute buffers. Shaders name them by role: `from_depths`, `to_depths` and so on.
-fn names(storage: Storage) -> [[&'static str; ATTRIBUTES]; 2] {
+/// Debug names of both pyramids' images. Shaders name them by role: `from_quad0`, `to_image0` and so on.
+fn names(storage: Storage) -> [[&'static str; IMAGES]; 2] {
     match storage {
         Storage::Apart => [
-            ["pulled depths", "pulled displacements", "pulled normals", "pulled colours", "pulled ids"],
-            ["pushed depths", "pushed displacements", "pushed normals", "pushed colours", "pushed ids"],
+            [
+                "pulled words 0–3",
+                "pulled words 4–7",
+                "pulled words 8–11",
+                "pulled word",
+                "pulled second word",
+            ],
+            [
+                "pushed words 0–3",
+                "pushed words 4–7",
+                "pushed words 8–11",
+                "pushed word",
+                "pushed second word",
+            ],
         ],
         Storage::PingPong => [
-            ["even depths", "even displacements", "even normals", "even colours", "even ids"],
-            ["odd depths", "odd displacements", "odd normals", "odd colours", "odd ids"],
+            ["even words 0–3", "even words 4–7", "even words 8–11", "even word", "even second word"],
+            ["odd words 0–3", "odd words 4–7", "odd words 8–11", "odd word", "odd second word"],
         ],
+    }
+}
+
+impl WordFormat {
+    /// The words of samples in frames of `variant`.
+    pub fn of(variant: &Variant) -> Self {
+        let coordinates = variant.texture.is_some();
+        let colour = match (coordinates, variant.colours, variant.precision) {
+            (true, ..) => 2,
+            (_, false, _) => 0,
+            (_, true, Precision::Full) => 3,
+            (_, true, Precision::Half) => 1,
+        };
+        Self {
+            precision: variant.precision,
+            unbounded_colours: variant.unbounded_colours,
+            colour,
+            coordinates,
+            ids: variant.has_ids(),
+        }
+    }
+
+    /// Number of words before those of the colour.
+    pub fn before_colour(self) -> u32 {
+        match self.precision {
+            Precision::Full => 9,
+            Precision::Half => 5,
+        }
+    }
+
+    /// Number of words of a sample.
+    pub fn words(self) -> u32 {
+        self.before_colour() + self.colour + u32::from(self.ids)
+    }
+
+    /// Words that the images store of a texel, unused ones too.
+    pub fn stored_words(self) -> usize {
+        self.images().map(|i| pixel_bytes(FORMATS[i]) as usize / 4).sum()
+    }
+
+    /// Images, as indices into [`FORMATS`]: four words a texel, and one a texel for one or two that are left.
+    fn images(self) -> impl Iterator<Item = usize> {
+        let quads = self.words().div_ceil(4) - u32::from(matches!(self.words() % 4, 1 | 2));
+        let singles = self.words().saturating_sub(4 * quads);
+        (0..quads as usize).chain(3..3 + singles as usize)
     }
 }
 
 impl Pyramid {
     fn new(
         device: &Arc<Device>,
-        variant: &Variant,
-        names: [&'static str; ATTRIBUTES],
-        samples: u64,
+        format: WordFormat,
+        names: [&'static str; IMAGES],
+        (finest, levels): (u32, Levels),
     ) -> Result<Self> {
-        let mut attributes = [const { None }; ATTRIBUTES];
-        for ((attribute, name), format) in attributes.iter_mut().zip(names).zip(formats(variant)) {
-            let Some(format) = format else { continue };
-            let buffer = Buffer::storage(device, name, samples * pixel_bytes(format))?;
-            *attribute = Some(AttributeBuffer { name, format, buffer });
-        }
-        Ok(Self { attributes })
+        let image = |i: usize| {
+            let image = Image::target(device, names[i], FORMATS[i], levels.extent(), ImageUse::Stored)?;
+            Ok((names[i], image))
+        };
+        let images = format.images().map(image).collect::<Result<Vec<_>>>()?;
+        let all = || format.images().zip(&images);
+        let read: Vec<_> = all().map(|(i, (_, image))| (READ[i], Binding::Fetched(image))).collect();
+        let stored = all().map(|(i, (_, image))| (WRITTEN[i], Binding::Stored(image)));
+        let written: Vec<_> = stored.chain(read.iter().copied()).collect();
+        let [written, read] = [written, read].map(|bindings| DescriptorSet::new(device, &bindings));
+        Ok(Self { written: written?, read: read?, images, finest, levels })
     }
 
-    /// Creates its descriptor set.
-    fn set(&self, device: &Arc<Device>) -> Result<DescriptorSet> {
-        let attributes = BINDINGS.into_iter().zip(&self.attributes);
-        let bindings = attributes
-            .filter_map(|(binding, attribute)| Some((binding, Binding::whole(&attribute.as_ref()?.buffer))));
-        DescriptorSet::new(device, &bindings.collect::<Vec<_>>())
+    /// First texel of a level that it has.
+    pub(super) fn origin(&self, level: u32) -> [u32; 2] {
+        self.levels.origin(level.saturating_sub(self.finest))
     }
 
-    /// Clears all samples.
-    pub(crate) fn clear(&self, enc: &mut Encoder<'_, '_>) {
-        let [of_points @ .., ids] = &self.attributes;
-        of_points.iter().flatten().for_each(|attribute| enc.zero(&attribute.buffer));
-        ids.iter().for_each(|attribute| enc.ones(&attribute.buffer));
-    }
-
-    /// Copies a range of samples to the same range of `other`.
-    pub(crate) fn copy(&self, enc: &mut Encoder<'_, '_>, other: &Self, samples: Range<u64>) {
-        for (from, to) in self.attributes.iter().flatten().zip(other.attributes.iter().flatten()) {
-            let bytes = pixel_bytes(from.format);
-            let [start, size] = [samples.start, samples.end - samples.start].map(|count| count * bytes);
-            enc.copy_range(&from.buffer, &to.buffer, start, size);
-        }
-    }
-
-    /// Accesses of its attribute buffers.
+    /// Accesses of its images.
     pub(crate) fn with(&self, access: Access) -> impl Iterator<Item = Use> {
-        self.attributes.iter().flatten().map(move |attribute| attribute.buffer.with(access))
+        self.images.iter().map(move |(_, image)| image.with(access.in_general()))
+    }
+}
+
+impl Levels {
+    /// The levels of a picture of `size` px.
+    pub fn of(size: [u32; 2]) -> Self {
+        Self { size }
+    }
+
+    /// Number of levels.
+    pub fn count(self) -> u32 {
+        1 + self.size[0].max(self.size[1]).next_power_of_two().trailing_zeros()
+    }
+
+    /// Width and height of a level, pixels of that level; 0 beyond the last.
+    pub fn size_of(self, level: u32) -> [u32; 2] {
+        if level < self.count() { self.size.map(|side| side.div_ceil(1 << level)) } else { [0; 2] }
+    }
+
+    /// First texel of a level.
+    pub fn origin(self, level: u32) -> [u32; 2] {
+        let along = (1..level).map(|finer| self.size_of(finer)[self.along()]).sum();
+        let mut origin = [0; 2];
+        if level > 0 {
+            origin[self.along()] = along;
+            origin[1 - self.along()] = self.size[1 - self.along()];
+        }
+        origin
+    }
+
+    /// Width and height of the images, px.
+    pub fn extent(self) -> [u32; 2] {
+        let ends = (0..self.count()).map(|level| {
+            let ([x, y], [width, height]) = (self.origin(level), self.size_of(level));
+            [x + width, y + height]
+        });
+        ends.reduce(|a, b| [a[0].max(b[0]), a[1].max(b[1])]).unwrap_or_default()
+    }
+
+    /// Axis along which the coarser levels lie.
+    fn along(self) -> usize {
+        if self.size[0] > self.size[1] { 0 } else { 1 }
     }
 }
 
 impl Pyramids {
     /// Creates the pyramids of `variant`, which must be of pull–push, for `size` px.
     pub fn new(device: &Arc<Device>, variant: &Variant, size: [u32; 2]) -> Result<Self> {
-        let storage = storage(variant);
-        let [first, second] = names(storage).map(|names| Pyramid::new(device, variant, names, samples(size)));
-        let pyramids = [first?, second?];
-        let [first, second] = pyramids.each_ref().map(|pyramid| pyramid.set(device));
-        Ok(Self { sets: [first?, second?], pyramids, storage, size })
+        let (storage, words) = (storage(variant), WordFormat::of(variant));
+        let [first, second] = names(storage);
+        let finest = finest_pushed(variant);
+        let pushed = (finest, Levels::of(size.map(|side| side.div_ceil(1 << finest))));
+        let first = Pyramid::new(device, words, first, (0, Levels::of(size)))?;
+        let second = Pyramid::new(device, words, second, pushed)?;
+        Ok(Self { pyramids: [first, second], storage, levels: Levels::of(size), words })
     }
 
     /// The pyramid of a resource.
@@ -168,25 +261,55 @@ impl Pyramids {
         }
     }
 
-    /// Push constants of a step that computes a level.
-    pub(super) fn step(&self, level: u32) -> [u32; 2] {
-        [level, self.levels()]
+    /// Push constants of a pull to a level.
+    pub(super) fn pull_step(&self, level: u32) -> Step {
+        let [from, to] = self.storage.pull(level);
+        self.step(level, [from, to], (from, level - 1))
+    }
+
+    /// Push constants of a copy of a pulled level to the other pyramid.
+    pub(super) fn copy_step(&self, level: u32) -> Step {
+        let ([_, from], [to, _]) = (self.storage.pull(level), self.storage.push(level));
+        self.step(level, [from, to], (from, level))
+    }
+
+    /// Push constants of a push to a level.
+    pub(super) fn push_step(&self, level: u32) -> Step {
+        let [from, to] = self.storage.push(level);
+        let coarser = match self.storage {
+            Storage::Apart => to,
+            Storage::PingPong => from,
+        };
+        self.step(level, [from, to], (coarser, level + 1))
+    }
+
+    fn step(&self, level: u32, [from, to]: [usize; 2], (of_adjacent, adjacent): (usize, u32)) -> Step {
+        let signed = |pair: [u32; 2]| pair.map(|value| value as i32);
+        let origin = |pyramid: usize, level| signed(self.pyramids[pyramid].origin(level));
+        Step {
+            size: signed(self.levels.size_of(level)),
+            to_origin: origin(to, level),
+            from_origin: origin(from, level),
+            adjacent_size: signed(self.levels.size_of(adjacent)),
+            adjacent_origin: origin(of_adjacent, adjacent),
+            level,
+        }
+    }
+
+    /// Finest level that push stores.
+    pub(super) fn finest_pushed(&self) -> u32 {
+        self.pyramids[1].finest
     }
 
     /// Workgroup counts of such a step.
     pub(super) fn grid(&self, level: u32) -> [u32; 3] {
-        grid_over(self.level_pixels(level))
+        grid_over_pixels(self.levels.size_of(level))
     }
 
-    /// Whether pyramids of this size with all attributes fit storage buffer ranges.
-    pub fn fit(capabilities: &Capabilities, options: &RenderOptions) -> bool {
-        let size = options.size;
-        let formats = match options.precision {
-            Precision::Full => FULL,
-            Precision::Half => compact(true),
-        };
-        let attribute = samples(size) * formats.map(pixel_bytes).into_iter().max().unwrap_or(0);
-        attribute <= capabilities.max_storage_buffer_range
+    /// Whether pyramids of this size, and their nearest points, fit a device.
+    pub fn fit(capabilities: &Capabilities, size: [u32; 2]) -> bool {
+        let images = Levels::of(size).extent().iter().all(|side| *side <= capabilities.max_image_side);
+        images && pixel_bytes(Format::R64_UINT) * pixels_of(size) <= capabilities.max_storage_buffer_range
     }
 
     /// Largest size of about that aspect ratio whose pyramids fit; at least 1×1.
@@ -199,7 +322,7 @@ impl Pyramids {
         let (mut fitting, mut too_large) = (1, longest + 1);
         while too_large - fitting > 1 {
             let middle = fitting + (too_large - fitting) / 2;
-            match Self::fit(capabilities, &RenderOptions { size: shrunk(middle), ..*options }) {
+            match Self::fit(capabilities, shrunk(middle)) {
                 true => fitting = middle,
                 false => too_large = middle,
             }
@@ -207,41 +330,15 @@ impl Pyramids {
         shrunk(fitting)
     }
 
-    /// Bytes per pixel of the attribute buffers; each level has a quarter of the pixels of the finer one.
+    /// Bytes per pixel of the images of a square picture.
     pub fn per_pixel(variant: &Variant) -> PerPixel {
-        let attributes = names(storage(variant)).into_iter().flat_map(|names| {
-            let bytes =
-                |(name, format): (_, Option<_>)| Some((name, 4.0 / 3.0 * pixel_bytes(format?) as f64));
-            names.into_iter().zip(formats(variant)).filter_map(bytes)
+        let format = WordFormat::of(variant);
+        // The coarser levels are half as wide as the finest one, and as high.
+        let texels = [1.5, 1.5 / f64::from(1_u32 << (2 * finest_pushed(variant)))];
+        let images = names(storage(variant)).into_iter().zip(texels).flat_map(|(names, texels)| {
+            format.images().map(move |i| (names[i], texels * pixel_bytes(FORMATS[i]) as f64))
         });
-        attributes.collect()
-    }
-
-    /// Whether compact colours share an exponent.
-    pub(crate) fn unbounded_colours(&self) -> bool {
-        let of = |attribute: &AttributeBuffer| attribute.format == Format::E5B9G9R9_UFLOAT_PACK32;
-        self.pyramids[0].attributes[COLOURS].as_ref().is_some_and(of)
-    }
-
-    /// Number of levels; the last has one pixel.
-    pub fn levels(&self) -> u32 {
-        levels(self.size)
-    }
-
-    /// Width and height of a level, pixels of that level.
-    pub fn level_size(&self, level: u32) -> [u32; 2] {
-        level_size(self.size, level)
-    }
-
-    /// Number of pixels of a level.
-    pub fn level_pixels(&self, level: u32) -> u64 {
-        level_pixels(self.size, level)
-    }
-
-    /// Sample indices of a level.
-    pub fn level_range(&self, level: u32) -> Range<u64> {
-        let start = (0..level).map(|finer| self.level_pixels(finer)).sum();
-        start..start + self.level_pixels(level)
+        images.collect()
     }
 
     /// Accesses of a pass that reads one pyramid and writes one.
@@ -250,40 +347,59 @@ impl Pyramids {
         read.into_iter().flatten().chain(self.pyramids[to].with(Access::COMPUTE_WRITE)).collect()
     }
 
-    /// All attribute buffers.
+    /// All images.
     pub fn list(&self) -> impl Iterator<Item = TargetInfo> {
-        let attributes = self.pyramids.iter().flat_map(|pyramid| pyramid.attributes.iter().flatten());
-        attributes.map(|attribute| TargetInfo {
-            name: attribute.name,
-            format: attribute.format,
-            bytes: attribute.buffer.size(),
-        })
+        let images = self.pyramids.iter().flat_map(|pyramid| &pyramid.images);
+        images.map(|(name, image)| TargetInfo { name, format: image.format(), bytes: image.bytes() })
     }
 }
 
+/// Finest level that push stores: shade may reconstruct level 0.
+fn finest_pushed(variant: &Variant) -> u32 {
+    u32::from(variant.reconstructs_in_shade())
+}
+
+fn storage(variant: &Variant) -> Storage {
+    variant.pull_push.map_or(Storage::Apart, |pull_push| pull_push.storage)
+}
+
 /// Resources of a pyramid's descriptor set.
-pub fn shader_resources(variant: &Variant) -> Vec<&'static shaders::Resource> {
-    BINDINGS
-        .into_iter()
-        .zip(formats(variant))
-        .filter_map(|(binding, format)| format.map(|_| binding))
-        .collect()
+pub fn shader_resources(variant: &Variant, written: bool) -> Vec<&'static shaders::Resource> {
+    let images = || WordFormat::of(variant).images();
+    let stored = images().filter(|_| written).map(|i| WRITTEN[i]);
+    stored.chain(images().map(|i| READ[i])).collect()
 }
 
-/// Number of samples of a pyramid.
-fn samples(size: [u32; 2]) -> u64 {
-    (0..levels(size)).map(|level| level_pixels(size, level)).sum()
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-fn levels(size: [u32; 2]) -> u32 {
-    let longest = size[0].max(size[1]);
-    1 + longest.next_power_of_two().trailing_zeros()
-}
+    #[test]
+    fn levels_do_not_overlap() {
+        for size in [[1, 1], [1, 9], [9, 1], [5, 5], [64, 64], [1920, 1080], [1080, 1920], [1023, 1025]] {
+            let levels = Levels::of(size);
+            let boxes: Vec<_> =
+                (0..levels.count()).map(|level| (levels.origin(level), levels.size_of(level))).collect();
+            assert_eq!(boxes.last().unwrap().1, [1, 1]);
+            for (i, (a, a_size)) in boxes.iter().enumerate() {
+                for (b, b_size) in &boxes[..i] {
+                    let apart = (0..2)
+                        .any(|axis| a[axis] + a_size[axis] <= b[axis] || b[axis] + b_size[axis] <= a[axis]);
+                    assert!(apart, "{size:?}: {boxes:?}");
+                }
+            }
+        }
+    }
 
-fn level_size(size: [u32; 2], level: u32) -> [u32; 2] {
-    size.map(|side| side.div_ceil(1 << level))
-}
-
-fn level_pixels(size: [u32; 2], level: u32) -> u64 {
-    level_size(size, level).map(u64::from).iter().product()
+    #[test]
+    fn images_have_all_words_and_at_most_one_that_is_unused() {
+        for (precision, colours) in [(Precision::Full, [0, 2, 3]), (Precision::Half, [0, 1, 2])] {
+            for (colour, ids) in colours.into_iter().flat_map(|colour| [(colour, false), (colour, true)]) {
+                let format =
+                    WordFormat { precision, unbounded_colours: false, colour, coordinates: false, ids };
+                let (stored, words) = (format.stored_words(), format.words() as usize);
+                assert!(words <= stored && stored <= words + 1, "{format:?}: {stored}");
+            }
+        }
+    }
 }

@@ -72,7 +72,7 @@ fn rasterizer_of_points(
         )))
     };
     match options.rasterizer {
-        _ if !Pyramids::fit(capabilities, options) => Err(too_large(device, options)),
+        _ if !Pyramids::fit(capabilities, options.size) => Err(too_large(device, options)),
         _ if scenes.iter().any(|placed| placed.scene.primitives.is_some()) && !capabilities.int64_atomics => {
             refuse("lines and triangles", "leave them out, or choose another device")
         }
@@ -90,15 +90,14 @@ fn rasterizer_of_points(
 /// Error: the pyramids do not fit the device; names a size that does.
 fn too_large(device: &Device, options: &RenderOptions) -> Error {
     let capabilities = device.capabilities();
-    let half = RenderOptions { precision: Precision::Half, ..*options };
-    let halved = if Pyramids::fit(capabilities, &half) { "half precision, or " } else { "" };
     let ([width, height], [most_width, most_height]) =
         (options.size, Pyramids::largest(capabilities, options));
     Error::Usage(format!(
-        "pyramids of {width}x{height} px do not fit the {} bytes of a buffer that shaders of {} can see (maxStorageBufferRange): \
-         choose {halved}at most {most_width}x{most_height} px",
+        "the pyramids of a picture of {width}x{height} px do not fit the images of {} (at most {} px wide and high), or its nearest points \
+         the {} bytes of a storage buffer: choose at most {most_width}x{most_height} px",
+        device.description().name,
+        capabilities.max_image_side,
         capabilities.max_storage_buffer_range,
-        device.description().name
     ))
 }
 

@@ -1,7 +1,6 @@
 //! Records passes: barriers, descriptor sets, push constants, workgroup and vertex counts.
 
 use super::pass::{Commands, Domain, Pass, Programs, StepContext};
-use super::pyramids::Pyramids;
 use super::resource::Resource;
 use super::scene_resources::{InstanceRun, SceneResources};
 use super::splat_list::SplatList;
@@ -21,6 +20,14 @@ const WORKGROUP: u64 = 64;
 const LARGE_WORKGROUPS: u32 = 256;
 /// Workgroups per row of a dispatch over pixels; within every device's limits.
 const WORKGROUPS_X: u32 = 32_768;
+
+/// Columns and rows of pixels of a workgroup of passes over pixels (`lib/pixel_group.glsl`).
+const PIXEL_GROUP: [u32; 2] = [16, 4];
+
+/// Workgroups for an invocation per pixel.
+pub fn grid_over_pixels([width, height]: [u32; 2]) -> [u32; 3] {
+    [width.div_ceil(PIXEL_GROUP[0]), height.div_ceil(PIXEL_GROUP[1]), 1]
+}
 
 /// Workgroups for so many invocations, in rows: for shaders that index by both coordinates.
 pub fn grid_over(invocations: u64) -> [u32; 3] {
@@ -60,8 +67,8 @@ pub struct PreparedPass {
     pub pass: &'static Pass,
     /// Accesses of its shaders.
     pub accesses: Vec<(Resource, Access)>,
-    /// Descriptor set 1, if it has programs.
-    pub targets: Option<DescriptorSet>,
+    /// Descriptor set 1.
+    pub targets: DescriptorSet,
     /// Framebuffer of a raster pass, except in a host's render pass.
     pub framebuffer: Option<Framebuffer>,
     /// Pipelines of the frame, or of each instance in order.
@@ -84,7 +91,7 @@ impl PreparedPass {
         let has_pipelines = self.pipelines.iter().any(|pipelines| !pipelines.is_empty());
         match &self.pass.commands {
             Commands::Steps(record) => {
-                record(&StepContext { pipeline: self.first(), targets: self.targets.as_ref(), frame }, rec);
+                record(&StepContext { pipeline: self.first(), targets: &self.targets, frame }, rec);
             }
             Commands::Dispatches if has_pipelines => {
                 for slice in 0..self.slices(frame) {
@@ -126,7 +133,7 @@ impl PreparedPass {
     ) -> impl Iterator<Item = (Domain, &'a Pipeline, Option<&'a InstanceRun<'a>>)> {
         let runs: Vec<_> = match self.pass.programs {
             Programs::OfScene(_) => runs.iter().map(|run| (run.index, Some(run))).collect(),
-            Programs::OfFrame(_) | Programs::None => vec![(0, None)],
+            Programs::OfFrame(_) => vec![(0, None)],
         };
         let pipelines_of = |(index, run)| self.pipelines.get(index).map(|pipelines| (pipelines, run));
         let all = runs.into_iter().filter_map(pipelines_of);
@@ -141,7 +148,7 @@ impl PreparedPass {
             let Pipeline::Compute(pipeline) = pipeline else { continue };
             let pyramid = frame.pyramid_of(self.pass);
             let sets_with = |first, third| -> Vec<&DescriptorSet> {
-                [Some(first), self.targets.as_ref(), third].into_iter().flatten().collect()
+                [Some(first), Some(&self.targets), third].into_iter().flatten().collect()
             };
             let Some(run) = run else {
                 let sets = sets_with(frame.view, pyramid);
@@ -152,7 +159,7 @@ impl PreparedPass {
                         let hierarchy = splats.hierarchy(slices, frame.most_steps(), frame.number);
                         enc.dispatch(pipeline, &sets, &hierarchy, [columns, rows, 1]);
                     }
-                    _ => enc.dispatch(pipeline, &sets, &(), grid_over(frame.targets.pixels())),
+                    _ => enc.dispatch(pipeline, &sets, &(), grid_over_pixels(frame.targets.size)),
                 }
                 continue;
             };
@@ -166,7 +173,7 @@ impl PreparedPass {
                     }
                     Domain::SurfelSlots => row_over(chunk_run.chunk.instance_stride.into()),
                     Domain::LargeTriangles => [LARGE_WORKGROUPS.div_ceil(chunk_run.instances), 1, 1],
-                    _ => grid_over(frame.targets.pixels()),
+                    _ => grid_over_pixels(frame.targets.size),
                 };
                 let sets = sets_with(chunk_run.set, pyramid.or(chunk_run.counts));
                 enc.dispatch(pipeline, &sets, &chunk_run.chunk, [x, y, chunk_run.instances]);
@@ -178,8 +185,7 @@ impl PreparedPass {
     pub fn draw(&self, draws: &mut Draws<'_>, frame: &Frame<'_>, push: &impl bytemuck::NoUninit) {
         for (domain, pipeline, run) in self.each(&frame.runs) {
             let Pipeline::Draw(pipeline) = pipeline else { continue };
-            let sets =
-                |first| -> Vec<&DescriptorSet> { std::iter::once(first).chain(&self.targets).collect() };
+            let sets = |first| -> Vec<&DescriptorSet> { vec![first, &self.targets] };
             let Some(run) = run else {
                 draws.draw(pipeline, &sets(frame.view), push, 3);
                 continue;
@@ -244,13 +250,10 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Descriptor set 2 of a pass without steps: the pulled pyramid if it writes that, the pushed one if it reads that.
+    /// Descriptor set 2 of a pass without steps that writes the pulled pyramid.
     fn pyramid_of(&self, pass: &Pass) -> Option<&'a DescriptorSet> {
-        let Pyramids { storage, sets, .. } = self.targets.pyramids.as_ref()?;
-        if pass.writes.contains(&Resource::Pulled) {
-            return Some(&sets[storage.pull(0)[1]]);
-        }
-        pass.reads.contains(&Resource::Pushed).then(|| &sets[storage.push(0)[1]])
+        let pulled = self.targets.pyramids.as_ref()?.of(Resource::Pulled);
+        pulled.filter(|_| pass.writes.contains(&Resource::Pulled)).map(|pyramid| &pyramid.written)
     }
 }
 
@@ -258,8 +261,16 @@ impl<'a> StepContext<'a> {
     /// Descriptor sets of a step that reads one of the pyramids and writes one.
     pub fn pyramid_sets(&self, [from, to]: [usize; 2]) -> Vec<&'a DescriptorSet> {
         let Some(pyramids) = &self.frame.targets.pyramids else { return Vec::new() };
-        let pyramids = [to, from].map(|which| &pyramids.sets[which]);
-        std::iter::once(self.frame.view).chain(self.targets).chain(pyramids).collect()
+        let pyramids = [&pyramids.pyramids[to].written, &pyramids.pyramids[from].read];
+        [self.frame.view, self.targets].into_iter().chain(pyramids).collect()
+    }
+
+    /// Descriptor sets of shade, which only reads the pyramids.
+    pub fn shade_sets(&self) -> Vec<&'a DescriptorSet> {
+        let Some(pyramids) = &self.frame.targets.pyramids else { return Vec::new() };
+        let pyramids =
+            [Resource::Pushed, Resource::Pulled].map(|role| pyramids.of(role).map(|pyramid| &pyramid.read));
+        [self.frame.view, self.targets].into_iter().chain(pyramids.into_iter().flatten()).collect()
     }
 }
 
@@ -272,7 +283,6 @@ impl Pass {
         to_own: bool,
     ) -> Vec<(Resource, Access)> {
         let programs = match &self.programs {
-            Programs::None => Vec::new(),
             Programs::OfFrame(programs) => programs(variant),
             Programs::OfScene(programs) => {
                 let distinct: HashSet<_> = scenes.iter().collect();

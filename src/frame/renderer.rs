@@ -32,8 +32,8 @@ pub struct RenderOptions {
     pub profile: bool,
     /// Count the splats by cull reason.
     pub count: bool,
-    /// Run visibility, attribute and normalize as separate passes on the tile path, to time them or to inspect intermediate targets. The
-    /// picture is identical bit by bit.
+    /// Run visibility, attribute and normalize as separate passes on the tile path, and the last step of push apart from shade, to time them
+    /// or to inspect intermediate targets. The picture is identical bit by bit.
     pub split: bool,
     /// Bound on the work of a frame on the compute path: about the maximum number of splats that each tile of 8 × 8 px visits in visibility,
     /// and again in coverage and attribute. A tile with more lacks the farthest ones, see [`FrameReport::incomplete`]. `None` visits all. The
@@ -174,7 +174,8 @@ impl Renderer {
             .collect())
     }
 
-    /// Reads back the pyramids of the last frame: pulled and pushed levels, fine to coarse; `None` unless it was of pull–push.
+    /// Reads back the pyramids of the last frame: pulled and pushed levels, fine to coarse; `None` unless it was of pull–push. An error if it
+    /// did not store level 0 of the pushed pyramid, as with [`RenderOptions::split`].
     pub fn read_pyramids(&self) -> Result<Option<[Vec<PyramidLevel>; 2]>> {
         let pyramids = self.frame.current().and_then(|current| current.targets.pyramids.as_ref());
         pyramids.map(|pyramids| pyramids.read(self.frame.device())).transpose()

@@ -98,8 +98,8 @@ impl Resource {
             Self::Nearest => &[&resource::NEAREST],
             Self::NearestDepth => &[&resource::NEAREST_DEPTH],
             Self::NearestId => &[&resource::NEAREST_ID],
-            Self::Pulled => &[&resource::TO_DEPTHS],
-            Self::Pushed => &[&resource::FINAL_DEPTHS],
+            Self::Pulled => &[&resource::TO_IMAGE0],
+            Self::Pushed => &[&resource::FINAL_QUAD0],
             Self::HostDepth => &[&resource::HOST_DEPTH],
             Self::IncompleteFrame => &[&resource::INCOMPLETE_FRAME],
             Self::Image => &[&resource::IMAGE_OUTPUT],
@@ -363,12 +363,12 @@ impl RenderTargets {
         match self.find(resource) {
             Some(Memory::Image(image)) => uses.push(image.with(access.of_image())),
             Some(Memory::Buffer(buffer)) => uses.push(buffer.with(access)),
-            None => uses.extend(self.attribute_uses(resource, access)),
+            None => uses.extend(self.pyramid_uses(resource, access)),
         }
     }
 
-    /// Accesses of a pyramid's attribute buffers.
-    fn attribute_uses(&self, resource: Resource, access: Access) -> impl Iterator<Item = Use> {
+    /// Accesses of a pyramid's images.
+    fn pyramid_uses(&self, resource: Resource, access: Access) -> impl Iterator<Item = Use> {
         let pyramid = self.pyramids.as_ref().and_then(|pyramids| pyramids.of(resource));
         pyramid.into_iter().flat_map(move |pyramid| pyramid.with(access))
     }
@@ -378,10 +378,7 @@ impl RenderTargets {
         match (self.buffer(resource), resource) {
             (Some(buffer), Resource::Nearest) => enc.ones(buffer),
             (Some(buffer), _) => enc.zero(buffer),
-            (None, _) => {
-                let pyramid = self.pyramids.as_ref().and_then(|pyramids| pyramids.of(resource));
-                pyramid.into_iter().for_each(|pyramid| pyramid.clear(enc));
-            }
+            (None, _) => {}
         }
     }
 

@@ -196,7 +196,8 @@ impl Variant {
             outputs: options.outputs,
             precision: options.precision,
             rasterizer,
-            split: tiled && (options.split || splatting.visibility == Visibility::Axis),
+            split: options.split && (tiled || settings.pull_push.is_some())
+                || tiled && splatting.visibility == Visibility::Axis,
             sliced: false,
             clips: tiled && streams.iter().any(|streams| streams.clips),
             corners: tiled && weights && streams.iter().any(|streams| streams.weights == Some(true)),
@@ -230,6 +231,12 @@ impl Variant {
     /// Whether pull–push projects points by compute shaders: surfels on the compute path, lines, triangles.
     pub fn has_compute_points(&self) -> bool {
         self.pull_push.is_some() && (self.rasterizer == Rasterizer::Compute || self.primitives)
+    }
+
+    /// Whether the shade pass of pull–push does the last step of push: it reads no neighbours of the result, and the levels do not alternate.
+    pub fn reconstructs_in_shade(&self) -> bool {
+        let apart = self.pull_push.is_some_and(|pull_push| pull_push.storage == Storage::Apart);
+        apart && !self.split && !self.coverage && self.texture.is_none()
     }
 
     /// Whether samples of pull–push have point ids.
@@ -274,7 +281,9 @@ impl Variant {
             .with(constant::TEXTURE, self.texture.is_some())
             .with(constant::TEXELS, self.texture.map_or(0, |texels| texels as u32))
             .with(constant::MATERIALS, self.materials)
+            .with(constant::RECONSTRUCT, self.reconstructs_in_shade())
             .with(constant::IDS, self.has_ids())
+            .with(constant::TUBES, self.primitives)
             .with(constant::FOOTPRINT, self.footprint as u32)
             .with(constant::CONFETTI, self.confetti)
             .with(constant::NORMALIZATION, self.normalization as u32)

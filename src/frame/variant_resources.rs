@@ -1,6 +1,6 @@
 //! Variant resources: the targets and passes of frames of one variant.
 
-use super::pass::{Commands, Pass, Programs};
+use super::pass::{Commands, Pass};
 use super::pipelines::Pipelines;
 use super::recording::PreparedPass;
 use super::targets::{HostBindings, RenderTargets};
@@ -57,10 +57,7 @@ pub(super) fn prepared(
         }
         _ => None,
     };
-    let targets = match pass.programs {
-        Programs::None => None,
-        Programs::OfFrame(_) | Programs::OfScene(_) => Some(current.targets.set(device, pass, of_host)?),
-    };
+    let targets = current.targets.set(device, pass, of_host)?;
     Ok(PreparedPass { pass, accesses: Vec::new(), targets, framebuffer, pipelines: Vec::new() })
 }
 

@@ -95,14 +95,6 @@ impl Access {
     pub const SHADER_READ: Self = Self::buffer(SHADER_STAGES, vk::AccessFlags::SHADER_READ, false);
     /// Uniform read in any shader.
     pub const UNIFORM_READ: Self = Self::buffer(SHADER_STAGES, vk::AccessFlags::UNIFORM_READ, false);
-    /// Transfer within one buffer, between disjoint ranges.
-    pub const COPY_WITHIN: Self = Self::buffer(
-        vk::PipelineStageFlags::TRANSFER,
-        vk::AccessFlags::from_raw(
-            vk::AccessFlags::TRANSFER_READ.as_raw() | vk::AccessFlags::TRANSFER_WRITE.as_raw(),
-        ),
-        true,
-    );
     /// Host read after the frame.
     pub const HOST_READ: Self = Self::buffer(vk::PipelineStageFlags::HOST, vk::AccessFlags::HOST_READ, false);
 
@@ -126,6 +118,11 @@ impl Access {
             vk::ImageLayout::UNDEFINED => Self { layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL, ..self },
             _ => self,
         }
+    }
+
+    /// The same access to an image of [`super::ImageUse::Stored`].
+    pub fn in_general(self) -> Self {
+        Self { layout: vk::ImageLayout::GENERAL, ..self }
     }
 
     /// Pipeline stages.

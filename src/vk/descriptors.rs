@@ -18,6 +18,8 @@ pub enum Binding<'a> {
     Texels(&'a TexelView),
     /// Sampled image.
     Sampled(&'a Image),
+    /// Sampled image in `GENERAL` layout: [`super::ImageUse::Stored`].
+    Fetched(&'a Image),
     /// Storage image.
     Stored(&'a Image),
     /// Input attachment.
@@ -90,7 +92,7 @@ impl DescriptorSet {
                         write.image_info(&image_info(image.view, vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL)),
                     );
                 }
-                Binding::Stored(image) => {
+                Binding::Stored(image) | Binding::Fetched(image) => {
                     update(write.image_info(&image_info(image.view, vk::ImageLayout::GENERAL)));
                 }
                 Binding::Input(image) => {
@@ -111,7 +113,7 @@ impl Binding<'_> {
             Self::Uniform(..) => vk::DescriptorType::UNIFORM_BUFFER,
             Self::Storage(..) => vk::DescriptorType::STORAGE_BUFFER,
             Self::Texels(_) => vk::DescriptorType::UNIFORM_TEXEL_BUFFER,
-            Self::Sampled(_) => vk::DescriptorType::SAMPLED_IMAGE,
+            Self::Sampled(_) | Self::Fetched(_) => vk::DescriptorType::SAMPLED_IMAGE,
             Self::Stored(_) => vk::DescriptorType::STORAGE_IMAGE,
             Self::Input(_) | Self::HostDepth(_) => vk::DescriptorType::INPUT_ATTACHMENT,
         }

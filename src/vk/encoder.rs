@@ -151,12 +151,6 @@ impl<'r, 'a> Encoder<'r, 'a> {
         unsafe { self.raw().cmd_copy_buffer(self.rec.cmd, from.raw, to, &[region]) };
     }
 
-    /// Copies `size` bytes at `offset` of `from` to the same offset of `to`.
-    pub fn copy_range(&mut self, from: &Buffer, to: &Buffer, offset: u64, size: u64) {
-        assert!(fits(offset, size, to), "a copy past the end of a buffer");
-        self.copy_part(from, to.raw, [offset, offset], size);
-    }
-
     /// Copies all of `image` to `buffer`, tightly packed.
     pub fn copy_image(&mut self, image: &Image, buffer: &Buffer) {
         let [width, height] = image.size();

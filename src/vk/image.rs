@@ -20,6 +20,8 @@ pub enum ImageUse {
     Output,
     /// The result of a frame that compute shaders write: copied to the CPU, or drawn over a host's target.
     StoredOutput,
+    /// Written and fetched by compute shaders in parts, in `GENERAL` layout ([`super::Access::in_general`]).
+    Stored,
 }
 
 /// A two-dimensional render target with its memory and view.
@@ -35,10 +37,13 @@ pub struct Image {
 /// Size of a pixel of `format`, bytes.
 pub fn pixel_bytes(format: vk::Format) -> u64 {
     match format {
-        vk::Format::R32G32B32A32_SFLOAT => 16,
+        vk::Format::R32G32B32A32_SFLOAT | vk::Format::R32G32B32A32_UINT => 16,
         vk::Format::R32G32B32_SFLOAT => 12,
         vk::Format::D32_SFLOAT_S8_UINT => 5,
-        vk::Format::R16G16B16A16_SFLOAT | vk::Format::R32G32_SFLOAT | vk::Format::R32G32_UINT => 8,
+        vk::Format::R16G16B16A16_SFLOAT
+        | vk::Format::R32G32_SFLOAT
+        | vk::Format::R32G32_UINT
+        | vk::Format::R64_UINT => 8,
         vk::Format::R16_SFLOAT => 2,
         _ => 4,
     }
@@ -53,7 +58,7 @@ impl Image {
         size: [u32; 2],
         also: ImageUse,
     ) -> Result<Self> {
-        let written = if also == ImageUse::StoredOutput {
+        let written = if matches!(also, ImageUse::Stored | ImageUse::StoredOutput) {
             vk::ImageUsageFlags::STORAGE
         } else if is_depth(format) {
             vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT
@@ -67,7 +72,7 @@ impl Image {
             }
             #[cfg(feature = "window")]
             ImageUse::Window => vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST,
-            ImageUse::Output | ImageUse::StoredOutput => {
+            ImageUse::Output | ImageUse::Stored | ImageUse::StoredOutput => {
                 vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::SAMPLED
             }
         };

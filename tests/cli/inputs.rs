@@ -109,11 +109,11 @@ fn exr_holds_linear_light() {
 fn errors_name_the_option_that_helps() {
     let Some(program) = Program::with_device("errors_name_the_option_that_helps") else { return };
     program.write("few.json", r#"{"max_storage_buffers":4}"#);
-    program.write("small.json", r#"{"max_storage_buffer_range":80000}"#);
+    program.write("small.json", r#"{"max_image_side":80}"#);
     let sphere = "render scene:sphere?points=200 -o a.png --size 64x64";
     for (more, way) in [
         ("--device-limits few.json --rasterizer compute", "choose another device with --device"),
-        ("--device-limits small.json --method pull-push", "(--half is half precision)"),
+        ("--device-limits small.json --method pull-push", "choose at most 53x53 px with --size"),
         ("--normalization surfel", "(`surfel convert --weights` captures them)"),
     ] {
         let run = program.run(&format!("{sphere} {more}"));

@@ -279,7 +279,8 @@ fn passes_and_targets_match_the_plan() {
                     "{target:?} {planned}"
                 );
             }
-            let coloured = planned.iter().any(|(name, _)| name.ends_with("colours"));
+            // Words 9 to 11 of a sample are its colour.
+            let coloured = planned.iter().any(|(name, _)| name.ends_with("8–11"));
             assert_eq!((renderer.targets().len(), coloured), (planned.len(), shading == Shading::Lit));
             let names = planned.iter().map(|target| target.0);
             let nearest: Vec<_> = names.filter(|name| name.starts_with("nearest")).collect();
@@ -293,7 +294,8 @@ fn passes_and_targets_match_the_plan() {
     assert_silent(&device);
 }
 
-/// As published the levels take turns in two pyramids, and what was pulled is copied; kept apart they are not. That changes no bit.
+/// As published the levels take turns in two pyramids, and what was pulled is copied; kept apart they are not, and shade does the last push.
+/// That changes no bit.
 #[test]
 fn where_the_levels_are_kept_changes_nothing() {
     let Some(device) = device(DeviceLimits::default()) else { return };
@@ -301,16 +303,25 @@ fn where_the_levels_are_kept_changes_nothing() {
     let scene = Scene::upload(&device, &surfels).unwrap();
     let outputs = Outputs { normal: true, depth: true, id: false };
     for side in [1, 2, 3, 64, 257] {
-        let options = RenderOptions { size: [side; 2], outputs, ..Default::default() };
-        let mut renderer = Renderer::new(&device, options).unwrap();
+        let fused = RenderOptions { size: [side; 2], outputs, ..Default::default() };
+        let [mut fused, mut renderer] = [fused, RenderOptions { split: true, ..fused }]
+            .map(|options| Renderer::new(&device, options).unwrap());
         for rules in [Rules::Paper, Rules::Robust] {
+            let mut apart_in_shade = None;
             let [apart, in_turns] = [Storage::Apart, Storage::PingPong].map(|storage| {
                 let pull_push = Some(PullPush { rules, storage });
                 let settings = Settings { cull: Cull::Back, pull_push, ..Default::default() };
                 let (picture, _) =
                     renderer.render_picture(&scene, &Truth::new(side).camera(), &settings).unwrap();
+                if storage == Storage::Apart {
+                    let (fused_picture, _) =
+                        fused.render_picture(&scene, &Truth::new(side).camera(), &settings).unwrap();
+                    assert!(fused.read_pyramids().is_err(), "level 0 of the pushed pyramid is not stored");
+                    apart_in_shade = Some(fused_picture);
+                }
                 (picture, renderer.read_pyramids().unwrap().unwrap())
             });
+            assert_eq!(apart_in_shade.as_ref(), Some(&apart.0), "{rules:?} {side}: shade does the last push");
             assert!(side < 64 || apart.0.colour.iter().any(|colour| colour[3] > 0.0), "nothing is seen");
             assert_eq!(apart.0, in_turns.0, "{rules:?} {side}");
             assert_eq!(apart.1[0], in_turns.1[0], "{rules:?} {side}: pulled");
@@ -358,8 +369,8 @@ fn samples_are_as_wide_as_asked_for_whatever_sums_are() {
         };
         // By tiles nothing is blended.
         assert_eq!(render(perspective_ewa::METHOD), (precision, 0));
-        // 64² px in all levels are 5461.
-        assert_eq!(render(pull_push::METHOD), (precision, bytes * 5461));
+        // Level 0 of 64² px, and beside it the others, 32 px wide.
+        assert_eq!(render(pull_push::METHOD), (precision, bytes * 64 * 96));
         // Computed points sum nothing.
         let computed = RenderOptions { rasterizer: Some(Rasterizer::Compute), ..options };
         let mut renderer = Renderer::new(&device, computed).unwrap();
@@ -381,19 +392,20 @@ fn what_cannot_be_is_refused() {
         Some(renderer.render(&scene, &truth.camera(), &settings).unwrap_err().to_string())
     };
     let open = RenderOptions::default();
-    // 8² px in all levels are 85 samples, of which the largest plane takes 16 bytes.
-    let [narrow, wide] = [1_359, 1_360]
-        .map(|bytes| DeviceLimits { max_storage_buffer_range: Some(bytes), ..Default::default() });
-    let Some(large) = refused(narrow.clone(), open, |_| {}) else { return };
-    assert!(large.contains("pyramids of 8x8 px do not fit the 1359 bytes"), "{large}");
-    assert!(large.ends_with("choose half precision, or at most 7x7 px"), "{large}");
+    // Levels of 8, 4, 2 and 1 px: the images are 12 px wide.
+    let sides = |side| DeviceLimits { max_image_side: Some(side), ..Default::default() };
+    let Some(large) = refused(sides(11), open, |_| {}) else { return };
+    assert!(large.contains("pyramids of a picture of 8x8 px do not fit"), "{large}");
+    assert!(large.ends_with("choose at most 7x7 px"), "{large}");
+    let fitting = device(sides(12)).unwrap();
     let surfels = scenes::open("scene:bumpy-sphere?points=100&seed=1").unwrap();
-    for (limits, precision) in [(wide, Precision::Full), (narrow, Precision::Half)] {
-        let fitting = device(limits).unwrap();
-        let options = RenderOptions { size: [8, 8], precision, ..open };
-        render(&fitting, &surfels, &Truth::new(8).camera(), &pull_push::METHOD.settings(), options);
-        assert_silent(&fitting);
-    }
+    let options = RenderOptions { size: [8, 8], ..open };
+    render(&fitting, &surfels, &Truth::new(8).camera(), &pull_push::METHOD.settings(), options);
+    assert_silent(&fitting);
+    // A nearest point takes 8 bytes.
+    let limits = DeviceLimits { max_storage_buffer_range: Some(511), ..Default::default() };
+    let large = refused(limits, open, |_| {}).unwrap();
+    assert!(large.contains("the 511 bytes of a storage buffer: choose at most 7x7 px"), "{large}");
     let affine = |settings: &mut Settings| settings.splatting.footprint = Footprint::Affine;
     let text = refused(DeviceLimits::default(), open, affine).unwrap();
     assert!(text.contains("pull-push has no splats"), "{text}");

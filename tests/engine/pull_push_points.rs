@@ -55,8 +55,14 @@ impl FrameCase<'_> {
     fn by(&self, device: &Arc<Device>, rasterizer: Option<Rasterizer>) -> (Rendered, Rasterizer) {
         let scene = Scene::upload(device, self.parts).unwrap();
         let outputs = Outputs { normal: true, depth: true, id: true };
-        let options =
-            RenderOptions { size: self.size, outputs, rasterizer, count: true, ..Default::default() };
+        let options = RenderOptions {
+            size: self.size,
+            outputs,
+            rasterizer,
+            count: true,
+            split: true,
+            ..Default::default()
+        };
         let mut renderer = Renderer::new(device, options).unwrap();
         let (picture, report) = renderer.render_picture(&scene, &self.camera, &self.settings).unwrap();
         let pyramids = renderer.read_pyramids().unwrap().unwrap();

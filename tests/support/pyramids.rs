@@ -68,8 +68,13 @@ impl FrameCase<'_> {
     pub fn by_gpu(&self, device: &Arc<Device>) -> Rendered {
         let scene = Scene::upload(device, self.parts).unwrap();
         let outputs = Outputs { normal: true, depth: true, id: true };
-        let options =
-            RenderOptions { size: self.size, outputs, precision: self.precision, ..Default::default() };
+        let options = RenderOptions {
+            size: self.size,
+            outputs,
+            precision: self.precision,
+            split: true,
+            ..Default::default()
+        };
         let mut renderer = Renderer::new(device, options).unwrap();
         let (picture, _) = renderer.render_picture(&scene, &self.camera, &self.settings).unwrap();
         let levels = renderer.read_pyramids().unwrap().unwrap();

@@ -153,7 +153,7 @@ pub struct Render {
     /// Writes a report: device, settings, counts, times; `-` for standard output
     #[arg(long, value_name = "FILE")]
     pub json: Option<OsString>,
-    /// Prints the time of each pass; `=split` also of the stages that one pass over tiles does together, and their ratio
+    /// Prints the time of each pass; `=split` also of passes that do several stages together, stage by stage, and their ratio
     #[arg(long, value_enum, value_name = "PASSES", num_args = 0..=1, require_equals = true, default_missing_value = "passes")]
     pub times: Option<PassTimes>,
     /// Renders N frames; the times exclude the first one unless it is the only one

@@ -21,7 +21,7 @@ pub static BOXES: Pass = Pass {
 
 fn record(steps: &StepContext<'_>, rec: &mut Recorder<'_>) {
     let (Some(pipeline), Some(splats)) = (steps.pipeline, steps.frame.splats) else { return };
-    let sets: Vec<_> = std::iter::once(steps.frame.view).chain(steps.targets).collect();
+    let sets = [steps.frame.view, steps.targets];
     for level in splats.steps(steps.frame.splat_count) {
         let uses = [splats.boxes().with(Access::COMPUTE_WRITE)];
         let mut enc = rec.pass(BOXES.name, &uses);

@@ -1,8 +1,10 @@
-//! Copy: pulled samples of each level → the pyramid of the coarser level, from which push reads both (marroquim2008 §3.5, figure 7b).
+//! Copy: pulled samples of each level → the pyramid of the coarser level, from which push reads both (marroquim2008 §3.5, figure 7b;
+//! `copy.glsl`).
 
-use crate::frame::pass::{Commands, Pass, Programs, StepContext};
+use crate::frame::pass::{Commands, Domain, Pass, Program, Programs, StepContext};
 use crate::frame::resource::Resource::{Pulled, Pushed};
-use crate::vk::{Access, Recorder};
+use crate::vk::Recorder;
+use crate::vk::shaders::COPY_COMPUTE;
 
 /// Completes both ping-pong pyramids.
 pub static COPY: Pass = Pass {
@@ -10,17 +12,17 @@ pub static COPY: Pass = Pass {
     reads: &[Pulled],
     writes: &[Pushed],
     clears: &[],
-    programs: Programs::None,
+    programs: Programs::OfFrame(|_| vec![Program::compute(&COPY_COMPUTE, Domain::Level)]),
     commands: Commands::Steps(record),
 };
 
-fn record(StepContext { frame, .. }: &StepContext<'_>, rec: &mut Recorder<'_>) {
+fn record(steps: &StepContext<'_>, rec: &mut Recorder<'_>) {
+    let StepContext { pipeline: Some(pipeline), frame, .. } = steps else { return };
     let Some(pyramids) = &frame.targets.pyramids else { return };
-    let uses = pyramids.pyramids.iter().flat_map(|pyramid| pyramid.with(Access::COPY_WITHIN));
-    let mut enc = rec.pass(COPY.name, &uses.collect::<Vec<_>>());
-    for level in 0..pyramids.levels() {
-        let [_, from] = pyramids.storage.pull(level);
-        let [to, _] = pyramids.storage.push(level);
-        pyramids.pyramids[from].copy(&mut enc, &pyramids.pyramids[to], pyramids.level_range(level));
+    for level in 0..pyramids.levels.count() {
+        let ([_, from], [to, _]) = (pyramids.storage.pull(level), pyramids.storage.push(level));
+        let mut enc = rec.pass(COPY.name, &pyramids.uses([from, to]));
+        let sets = steps.pyramid_sets([from, to]);
+        enc.dispatch(pipeline, &sets, &pyramids.copy_step(level), pyramids.grid(level));
     }
 }

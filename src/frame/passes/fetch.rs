@@ -3,7 +3,8 @@
 use crate::frame::pass::{Commands, Domain, Pass, Program, Programs};
 use crate::frame::resource::Resource::{Nearest, NearestId, Pulled};
 use crate::vk::shaders::{
-    FETCH_COMPUTE, FETCH_LINES_COMPUTE, FETCH_RASTER_POINTS_COMPUTE, FETCH_TRIANGLES_COMPUTE,
+    FETCH_COMPUTE, FETCH_EMPTY_COMPUTE, FETCH_LINES_COMPUTE, FETCH_RASTER_POINTS_COMPUTE,
+    FETCH_TRIANGLES_COMPUTE,
 };
 
 /// One invocation per pixel, for each chunk of a scene. Chunks write disjoint pixels, so their order is free; the first chunk of the first
@@ -30,7 +31,7 @@ pub static EMPTY: Pass = Pass {
     name: "fetch",
     reads: &[],
     writes: &[Pulled],
-    clears: &[Pulled],
-    programs: Programs::None,
+    clears: &[],
+    programs: Programs::OfFrame(|_| vec![Program::compute(&FETCH_EMPTY_COMPUTE, Domain::Pixels)]),
     commands: Commands::Dispatches,
 };

@@ -129,7 +129,6 @@ mod tests {
 
     fn programs(pass: &Pass, variant: &SceneVariant) -> Vec<Program> {
         match pass.programs {
-            Programs::None => Vec::new(),
             Programs::OfFrame(programs) => programs(&variant.frame),
             Programs::OfScene(programs) => programs(variant),
         }

@@ -18,9 +18,9 @@ pub static PULL: Pass = Pass {
 fn record(steps: &StepContext<'_>, rec: &mut Recorder<'_>) {
     let StepContext { pipeline: Some(pipeline), frame, .. } = steps else { return };
     let Some(pyramids) = &frame.targets.pyramids else { return };
-    for level in 1..pyramids.levels() {
+    for level in 1..pyramids.levels.count() {
         let pair = pyramids.storage.pull(level);
         let mut enc = rec.pass(PULL.name, &pyramids.uses(pair));
-        enc.dispatch(pipeline, &steps.pyramid_sets(pair), &pyramids.step(level), pyramids.grid(level));
+        enc.dispatch(pipeline, &steps.pyramid_sets(pair), &pyramids.pull_step(level), pyramids.grid(level));
     }
 }

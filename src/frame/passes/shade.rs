@@ -1,15 +1,17 @@
-//! Shade: the final level 0 → picture, normal, depth (marroquim2008 §3.4; `shade.glsl`).
+//! Shade: the final level 0 → picture, normal, depth (marroquim2008 §3.4; `shade.glsl`). Unless a pixel needs its neighbours, it reconstructs
+//! level 0 itself.
 
-use crate::frame::pass::{Commands, Domain, Pass, Program, Programs};
-use crate::frame::resource::Resource::{Depth, Id, Image, Normal, Pushed};
+use crate::frame::pass::{Commands, Domain, Pass, Program, Programs, StepContext};
+use crate::frame::resource::Resource::{Depth, Id, Image, Normal, Pulled, Pushed};
 use crate::vk::shaders::{
     SHADE_COMPUTE, SHADE_LOOKUPS_COMPUTE, SHADE_LOOKUPS_STORE_IDS_COMPUTE, SHADE_STORE_IDS_COMPUTE,
 };
+use crate::vk::{Access, Recorder};
 
 /// One invocation per pixel; with a texture or materials, the variant that looks these up.
 pub static SHADE: Pass = Pass {
     name: "shade",
-    reads: &[Pushed],
+    reads: &[Pulled, Pushed],
     writes: &[Image, Normal, Depth, Id],
     clears: &[],
     programs: Programs::OfFrame(|variant| {
@@ -19,7 +21,16 @@ pub static SHADE: Pass = Pass {
             (true, false) => &SHADE_LOOKUPS_COMPUTE,
             (true, true) => &SHADE_LOOKUPS_STORE_IDS_COMPUTE,
         };
-        vec![Program::compute(module, Domain::Pixels)]
+        vec![Program::compute(module, Domain::Level)]
     }),
-    commands: Commands::Dispatches,
+    commands: Commands::Steps(record),
 };
+
+fn record(steps: &StepContext<'_>, rec: &mut Recorder<'_>) {
+    let StepContext { pipeline: Some(pipeline), frame, .. } = steps else { return };
+    let Some(pyramids) = &frame.targets.pyramids else { return };
+    let outputs = [Image, Normal, Depth, Id].map(|output| (output, Access::COMPUTE_WRITE));
+    let read = pyramids.pyramids.iter().flat_map(|pyramid| pyramid.with(Access::COMPUTE_READ));
+    let mut enc = rec.pass(SHADE.name, &frame.uses(&outputs).into_iter().chain(read).collect::<Vec<_>>());
+    enc.dispatch(pipeline, &steps.shade_sets(), &pyramids.push_step(0), pyramids.grid(0));
+}

@@ -108,6 +108,7 @@ impl Buffers {
             size: choices.size,
             outputs,
             rasterizer: choices.rasterizer,
+            split: self.buffer.is_level(),
             ..Default::default()
         };
         let shading = match self.buffer {

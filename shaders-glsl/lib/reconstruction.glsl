@@ -1,0 +1,152 @@
+// Reconstruction of a sample of the finer level from the coarser samples around it and from its neighbours (marroquim2008 §3.3).
+
+layout(constant_id = 32) const bool PING_PONG = false; // both pyramids alternate by level
+
+// Widening of a disc's variance on level 0, px²; four times as much per level. Narrower discs leave holes.
+const float WIDENING = 0.25;
+// Negated ln of the weight at a disc's rim: σ is a third of the radius; half of it as published.
+const float RIM = 4.5, PAPER_RIM = 2.0;
+
+// Widening of the covariance of the discs around a pixel, px²: discs within an eighth of a pixel do not define a texture's gradient.
+const float SPREAD = 1.0 / 64.0;
+// Relative widening, so that discs along a line define a gradient along it only.
+const float ALONG = 1.0 / 4096.0;
+
+// Candidates of a pixel: the four nearest coarser pixels, then the pixel and its neighbours, row by row.
+const uint COARSER = 4, CANDIDATES = PAPER ? 4 : 13;
+
+// What push accumulates of the candidates of a pixel. Mean displacements and coordinates are relative to those of `front`.
+struct Sums {
+    Sample front;   // the front disc decides which others are of its surface
+    float priority; // of the front disc
+    Sample mean;    // weighted sums
+    float total, greatest;
+    vec2 displacement;
+    vec3 squares;   // second moments of displacements
+    vec2 x_products, y_products; // and of displacements and coordinates
+};
+
+// Candidate k of a pixel. Its displacement is relative to the pixel's centre.
+Sample candidate(uint k, ivec2 pixel) {
+    bool coarser = k < COARSER;
+    ivec2 step = 2 * (pixel & 1) - 1;
+    ivec2 from_pixel = coarser ? pixel / 2 + step * ivec2(k & 1, k >> 1) : pixel + ivec2((k - 4) % 3, (k - 4) / 3) - 1;
+    ivec2 size = coarser ? pass.adjacent_size : pass.size;
+    // Beyond the level, a pixel of it is loaded and ignored: all lanes load.
+    ivec2 texel = (coarser ? pass.adjacent_origin : pass.from_origin) + clamp(from_pixel, ivec2(0), max(size - 1, 0));
+    Sample s = NO_SAMPLE;
+    // With ping-pong, the pyramid that is read holds the final coarser level and a copy of this one.
+    if (coarser && !PING_PONG) s = load_final(texel);
+    else s = load_from(texel);
+    if (!is_within(size, from_pixel)) s.near = 0.0;
+    // Integer offsets keep the digits that differences of screen positions lose.
+    s.displacement += (coarser ? vec2(2 * from_pixel - pixel) + 0.5 : vec2(from_pixel - pixel)) * float(1u << pass.level);
+    return s;
+}
+
+// Weight of a candidate for the pixel with this centre, 0 if its disc does not cover that. The front disc is the nearest that does; as
+// published, the one of greatest weight.
+float weight_of(Sample s, vec2 centre, float widening, inout Sums sums) {
+    float m2 = radii2(s, centre + s.displacement, -s.displacement, widening);
+    bool covers = s.near > 0.0 && m2 <= 1.0;
+    float weight = covers ? exp(-(PAPER ? PAPER_RIM : RIM) * m2) : 0.0;
+    float priority = PAPER ? weight : -s.near;
+    if (covers && priority > sums.priority) {
+        sums.priority = priority;
+        sums.front = s;
+    }
+    return weight;
+}
+
+// Adds a candidate of weight `w`, if it is of the front surface.
+void add(Sample s, float w, vec2 centre, inout Sums sums) {
+    if (!PAPER && s.near > sums.front.far || s.tube != sums.front.tube) w = 0.0;
+    sums.total += w;
+    sums.mean.near += w * s.near;
+    sums.mean.far += w * s.far;
+    // Discs store the depth of their centres; the picture shows the depth at the pixel's centre. Tubes store the depth of their axes.
+    sums.mean.depth += w * (!PAPER && pass.level == 0 && !s.tube ? depth_at(s, centre + s.displacement, -s.displacement) : s.depth);
+    sums.mean.radius += w * s.radius;
+    sums.mean.displacement += w * s.displacement;
+    sums.mean.normal += w * aligned_direction(s, sums.front);
+    sums.mean.colour += w * s.colour;
+    vec2 displacement = s.displacement - sums.front.displacement, offset = coordinate_offset(s, sums.front);
+    sums.mean.coordinates += w * offset;
+    sums.displacement += w * displacement;
+    sums.squares += w * vec3(displacement.x * displacement.x, displacement.x * displacement.y, displacement.y * displacement.y);
+    sums.x_products += w * displacement.x * offset;
+    sums.y_products += w * displacement.y * offset;
+    if (w > sums.greatest) {
+        sums.greatest = w;
+        sums.mean.id = s.id;
+    }
+}
+
+// Mean of the accumulated candidates; no sample if there are none.
+Sample mean_of(Sums sums) {
+    Sample mean = sums.mean;
+    if (!(sums.total > 0.0)) return NO_SAMPLE;
+    mean.tube = sums.front.tube;
+    mean.near /= sums.total;
+    mean.far /= sums.total;
+    mean.depth /= sums.total;
+    mean.radius /= sums.total;
+    mean.displacement /= sums.total;
+    mean.normal = dot(mean.normal, mean.normal) > 0.0 ? normalize(mean.normal) : vec3(0.0);
+    mean.colour /= sums.total;
+    mean.coordinates /= sums.total;
+    if (TEXTURE && !PAPER && pass.level == 0) {
+        // To first order, by least squares: a mean would give the coordinates at the mean of the discs' centres.
+        vec2 m = mean.displacement, d = sums.displacement / sums.total;
+        vec3 c = sums.squares / sums.total - vec3(d.x * d.x, d.x * d.y, d.y * d.y);
+        c.xz += SPREAD + ALONG * (c.x + c.z);
+        vec2 x = sums.x_products / sums.total - d.x * mean.coordinates, y = sums.y_products / sums.total - d.y * mean.coordinates;
+        mean.coordinates -= ((x * c.z - y * c.y) * m.x + (y * c.x - x * c.y) * m.y) / (c.x * c.z - c.y * c.y);
+    }
+    mean.coordinates += sums.front.coordinates;
+    return mean;
+}
+
+// The final sample of a pixel of the level.
+Sample reconstructed(ivec2 pixel) {
+    vec2 centre = level_centre(pass.level, pixel);
+    float widening = PAPER ? 0.0 : WIDENING * float(1u << (2 * pass.level));
+
+    Sums sums = Sums(NO_SAMPLE, PAPER ? 0.0 : -1e38, NO_SAMPLE, 0.0, 0.0, vec2(0.0), vec3(0.0), vec2(0.0), vec2(0.0));
+    Sample samples[13];
+    float weights[13];
+    // Unrolled by hand: compilers unroll shorter bodies only, and arrays with a dynamic index are memory.
+#define WEIGHT(K)                                                                  \
+    if (K < CANDIDATES) {                                                            \
+        samples[K] = candidate(K, pixel);                                          \
+        weights[K] = weight_of(samples[K], centre, widening, sums);                \
+    }
+#define ADD(K) if (K < CANDIDATES) add(samples[K], weights[K], centre, sums);
+    WEIGHT(0) WEIGHT(1) WEIGHT(2) WEIGHT(3) WEIGHT(4) WEIGHT(5) WEIGHT(6) WEIGHT(7) WEIGHT(8) WEIGHT(9) WEIGHT(10) WEIGHT(11) WEIGHT(12)
+    ADD(0) ADD(1) ADD(2) ADD(3) ADD(4) ADD(5) ADD(6) ADD(7) ADD(8) ADD(9) ADD(10) ADD(11) ADD(12)
+    Sample mean = mean_of(sums), point;
+    bool has_mean = mean.near > 0.0;
+    if (PAPER) {
+        point = load_from(pass.from_origin + pixel);
+        // Hidden if behind the coarser pixel that contains it.
+        bool hidden = samples[0].near > 0.0 && point.near > samples[0].far;
+        return point.near == 0.0 || hidden ? mean : point;
+    }
+    point = samples[8];
+    // On the finest level a point is visible if its disc covers the pixel's centre; otherwise it only contributes to others.
+    if (pass.level == 0 && weights[8] == 0.0) point.near = 0.0;
+    if (point.near == 0.0 || has_mean && point.near > mean.far) {
+        point = mean;
+    } else if (pass.level == 0 && has_mean && mean.near <= point.far && mean.tube == point.tube) {
+        // The surface of a tube is computed from its axis, whose depth is that of the disc's centre.
+        if (point.tube) {
+            point.displacement = mean.displacement;
+            point.radius = mean.radius;
+        }
+        point.colour = mean.colour;
+        point.coordinates = mean.coordinates;
+        point.normal = mean.normal;
+        point.depth = mean.depth;
+    }
+    return point;
+}
