@@ -16,6 +16,8 @@
 #else
 #include "lib/surfels.glsl"
 #endif
+#define ORDER_ACCESS readonly
+#include "lib/order.glsl"
 #include "lib/image.glsl"
 #include "lib/pixel_row.glsl"
 
@@ -26,6 +28,7 @@
 layout(local_size_x = 64) in;
 
 layout(constant_id = 1) const bool CULL_BACK = false;
+layout(constant_id = 49) const bool UNORDERED = false; // splats are in another order than surfels: lib/order.glsl
 layout(constant_id = 21) const bool MOVED = false; // splats of discs moved away from the eye by ε along the camera's axis
 
 // Least q, relative to (w / F)²: nearer to the eye plane, rounding destroys the ellipse's position.
@@ -225,8 +228,8 @@ Box box_of_splat(uint i, Splat splat) {
     return box_of(low, high, nearest, has_clip(clip) ? chunk.first_clip + clip : NO_CLIP);
 }
 
-void store_attributes(uint i, Splat splat) {
-    uint k = chunk.attribute_rows * splat_index(i);
+void store_attributes(uint slot, uint i, Splat splat) {
+    uint k = chunk.attribute_rows * splat_index(slot);
     vec4 corners;
     mat2 square;
     vec3 attribute0, attribute1;
@@ -240,12 +243,17 @@ void store_attributes(uint i, Splat splat) {
     }
 }
 
-// Stores the result of surfel i at its own index, so that neighbours stay neighbours.
-void store(uint i, uint reason, Splat splat) {
-    uint index = splat_index(i);
+// Index of the surfel whose splat is in a slot of the list, so that splats of neighbours are neighbours.
+uint surfel_of(uint slot) {
+    return UNORDERED ? order[slot] : slot;
+}
+
+// Stores the result of surfel i in a slot.
+void store(uint slot, uint i, uint reason, Splat splat) {
+    uint index = splat_index(slot);
     splat_boxes[index] = reason == DRAWN ? box_of_splat(i, splat) : EMPTY_BOX;
     if (reason == DRAWN) {
-        store_attributes(i, splat);
+        store_attributes(slot, i, splat);
         // Frame lists hold distances in the world's unit.
         if (INSTANCED && has_linear_depth()) scale_plane(view.scale, splat.plane_hi, splat.plane_lo);
         store_splat(index, splat);
@@ -254,31 +262,36 @@ void store(uint i, uint reason, Splat splat) {
     }
 }
 
-// Whether surfel i exists. Marks the padding of the list as empty.
-bool has_surfel(uint i) {
-    bool exists = i < chunk.count && instance_index() < chunk.instance_count;
-    if (!exists && i < chunk.instance_stride) splat_boxes[splat_index(i)] = EMPTY_BOX;
+// Whether a slot has a surfel. Marks the padding of the list as empty.
+bool has_surfel(uint slot) {
+    bool exists = slot < chunk.count && instance_index() < chunk.instance_count;
+    if (!exists && slot < chunk.instance_stride) splat_boxes[splat_index(slot)] = EMPTY_BOX;
     return exists;
 }
 
 #else
 
-void store(uint i, uint reason, Splat splat) {
-    store_splat(splat_index(i), splat);
+uint surfel_of(uint slot) {
+    return slot;
 }
 
-bool has_surfel(uint i) {
-    return i < chunk.count;
+void store(uint slot, uint i, uint reason, Splat splat) {
+    store_splat(splat_index(slot), splat);
+}
+
+bool has_surfel(uint slot) {
+    return slot < chunk.count;
 }
 
 #endif
 
 void main() {
-    uint i = gl_GlobalInvocationID.x;
-    if (!has_surfel(i)) return;
+    uint slot = gl_GlobalInvocationID.x;
+    if (!has_surfel(slot)) return;
+    uint i = surfel_of(slot);
     Splat splat = Splat(vec2(0.0), vec2(1.0, 0.0), 1.0, 0.0, 0, 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
     uint reason = footprint(i, splat);
-    store(i, reason, splat);
+    store(slot, i, reason, splat);
     count(reason);
 }
 

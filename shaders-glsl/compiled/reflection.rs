@@ -225,8 +225,8 @@ pub static FOOTPRINT_TILES_COMPUTE: Module = Module {
     name: "footprint_tiles_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("footprint_tiles_compute.spv"),
-    constants: &[0, 1, 2, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 21, 23, 26, 27, 37, 45, 46, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
-    resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::SPLAT_ATTRIBUTES, true), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::WEIGHTS, false), (&resource::SPLAT_BOXES, true), (&resource::COUNTS, true)],
+    constants: &[0, 1, 2, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 21, 23, 26, 27, 37, 45, 46, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+    resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::SPLAT_ATTRIBUTES, true), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::WEIGHTS, false), (&resource::SPLAT_BOXES, true), (&resource::ORDER, false), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -408,6 +408,36 @@ pub static NORMALIZE_SUBPASS_COVERAGE_FRAGMENT: Module = Module {
     constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::COVERAGE, false), (&resource::VISIBILITY_INPUT, false), (&resource::SUMS0_INPUT, false), (&resource::SUMS1_INPUT, false)],
     push: size_of::<layout::Subpass>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/order.glsl`.
+pub static ORDER_COMPUTE: Module = Module {
+    name: "order_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("order_compute.spv"),
+    constants: &[50, 51],
+    resources: &[(&resource::POSITIONS, false), (&resource::ORDER, true)],
+    push: size_of::<layout::OrderStep>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/order.glsl`.
+pub static ORDER_SCAN_COMPUTE: Module = Module {
+    name: "order_scan_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("order_scan_compute.spv"),
+    constants: &[],
+    resources: &[(&resource::ORDER, true)],
+    push: size_of::<layout::OrderStep>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/order.glsl`.
+pub static ORDER_SCATTER_COMPUTE: Module = Module {
+    name: "order_scatter_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("order_scatter_compute.spv"),
+    constants: &[],
+    resources: &[(&resource::ORDER, true)],
+    push: size_of::<layout::OrderStep>() as u32,
 };
 
 /// The vertex stage of `shaders-glsl/points.glsl`.
@@ -790,6 +820,8 @@ pub mod constant {
     pub const UNBOUNDED_COLOURS: u32 = 34;
     /// `UNCHECKED`, first in `shaders-glsl/attribute.glsl`.
     pub const UNCHECKED: u32 = 61;
+    /// `UNORDERED`, first in `shaders-glsl/footprint.glsl`.
+    pub const UNORDERED: u32 = 49;
     /// `VERTEX_COLOURS`, first in `shaders-glsl/fetch.glsl`.
     pub const VERTEX_COLOURS: u32 = 29;
     /// `VISIBLE_BY_SUMS`, first in `shaders-glsl/normalize.glsl`.
@@ -973,6 +1005,15 @@ pub mod resource {
         binding: 3,
         kind: DescriptorType::STORAGE_BUFFER,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
+    };
+
+    /// `Order`, first in `shaders-glsl/footprint.glsl`.
+    pub static ORDER: Resource = Resource {
+        name: "Order",
+        set: 0,
+        binding: 20,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
     /// `Positions`, first in `shaders-glsl/attribute.glsl`.
@@ -1647,6 +1688,31 @@ pub mod layout {
     }
     const _: () = assert!(std::mem::offset_of!(Materials, count) == 0);
     const _: () = assert!(std::mem::size_of::<Materials>() == 4);
+
+    /// `OrderStep`, 48 bytes, first in `shaders-glsl/order.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct OrderStep {
+        /// Byte 0.
+        pub low: [f32; 4],
+        /// Byte 16.
+        pub scale: [f32; 4],
+        /// Byte 32.
+        pub count: u32,
+        /// Byte 36.
+        pub capacity: u32,
+        /// Byte 40.
+        pub runs: u32,
+        /// Byte 44.
+        pub digit: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(OrderStep, low) == 0);
+    const _: () = assert!(std::mem::offset_of!(OrderStep, scale) == 16);
+    const _: () = assert!(std::mem::offset_of!(OrderStep, count) == 32);
+    const _: () = assert!(std::mem::offset_of!(OrderStep, capacity) == 36);
+    const _: () = assert!(std::mem::offset_of!(OrderStep, runs) == 40);
+    const _: () = assert!(std::mem::offset_of!(OrderStep, digit) == 44);
+    const _: () = assert!(std::mem::size_of::<OrderStep>() == 48);
 
     /// `ScalarOptions`, 8 bytes, first in `shaders-glsl/colour_map.glsl`.
     #[repr(C)]

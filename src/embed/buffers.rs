@@ -3,7 +3,7 @@
 use super::formats::{COLOURS, NORMALS, SCALARS, SHAPES, VECTORS, format_of, one_radius, sizes, stream};
 use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Surfels};
-use crate::scene::{Changes, ColourStream, Scene};
+use crate::scene::{Changes, ColourStream, Order, Scene};
 use crate::vk::{Access, Device, Recorder, Staging, Uploads};
 use ash::vk;
 use glam::DVec3;
@@ -68,6 +68,8 @@ pub struct Buffers {
     pub origin: DVec3,
     /// Bounds in world space, until [`Scene::set_bounds`], which documents their use.
     pub bounds: Bounds,
+    /// Order of the surfels. A wrong [`Order::Coherent`] costs time, nothing else: a shuffled million then takes half a minute.
+    pub order: Order,
 }
 
 impl Scene {
@@ -76,7 +78,7 @@ impl Scene {
     /// Before a frame, the host makes its writes visible to [`READ_ACCESS`] in [`READ_STAGES`]; writes after a frame wait for these stages.
     /// Frames of one queue read the values that were written before them in queue order, whatever the number of frames in flight.
     ///
-    /// Surfels are best in Morton order. Invalid surfels ([`Surfels::is_valid`]; the squared length of packed normals may be off by 0.03)
+    /// Invalid surfels ([`Surfels::is_valid`]; the squared length of packed normals may be off by 0.03)
     /// are not drawn; reports of [`crate::Renderer`] count them as `invalid`.
     ///
     /// # Errors
@@ -117,6 +119,7 @@ impl Scene {
                 count: buffers.count,
                 origin: buffers.origin,
                 bounds: buffers.bounds,
+                order: buffers.order,
             },
         )
     }

@@ -2,7 +2,7 @@
 //!
 //! Layouts, barriers, labels, timers and the list of passes of a frame follow from these and from shader reflection.
 
-use super::recording::Frame;
+use super::recording::{Frame, PreparedPass};
 use super::resource::Resource;
 use super::variant::{SceneVariant, Variant};
 use crate::vk::shaders::Module;
@@ -50,6 +50,8 @@ pub struct StepContext<'a> {
     pub targets: &'a crate::vk::DescriptorSet,
     /// The frame.
     pub frame: &'a Frame<'a>,
+    /// The pass.
+    pub prepared: &'a PreparedPass,
 }
 
 /// Attachments and fixed-function state of a raster pass.

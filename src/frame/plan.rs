@@ -1,6 +1,7 @@
 //! Frame plans: passes and targets of a frame, without creating it.
 
 use super::methods::{Path, passes};
+use super::passes::order;
 use super::renderer::RenderOptions;
 use super::splat_buffers::SPLAT;
 use super::splat_list::{ATTRIBUTE_ROW, BOX};
@@ -17,7 +18,7 @@ pub struct FramePlan {
     pub passes: Vec<&'static str>,
     /// The targets with their bytes per pixel; fractions if a target has less than one value per pixel.
     pub targets: Vec<(&'static str, f64)>,
-    /// Bytes of a splat with its box and attributes; 0 without splats.
+    /// Bytes of a splat with its box, attributes and place in the order; 0 without splats.
     pub splat: u64,
 }
 
@@ -38,7 +39,10 @@ impl FramePlan {
         let splat = match (variant.pull_push, variant.is_tiled()) {
             (Some(_), _) => 0,
             (None, false) => SPLAT,
-            (None, true) => SPLAT + BOX + ATTRIBUTE_ROW * variant.attribute_rows().max(1),
+            (None, true) => {
+                let order = if variant.unordered { order::SURFEL } else { 0 };
+                SPLAT + BOX + ATTRIBUTE_ROW * variant.attribute_rows().max(1) + order
+            }
         };
         Self { passes: names, targets: per_pixel(&variant), splat }
     }

@@ -36,7 +36,7 @@ pub fn grid_over(invocations: u64) -> [u32; 3] {
 }
 
 /// Workgroups for so many invocations in one row, for shaders that index by x only.
-fn row_over(invocations: u64) -> [u32; 3] {
+pub fn row_over(invocations: u64) -> [u32; 3] {
     [invocations.div_ceil(WORKGROUP) as u32, 1, 1]
 }
 
@@ -91,7 +91,10 @@ impl PreparedPass {
         let has_pipelines = self.pipelines.iter().any(|pipelines| !pipelines.is_empty());
         match &self.pass.commands {
             Commands::Steps(record) => {
-                record(&StepContext { pipeline: self.first(), targets: &self.targets, frame }, rec);
+                record(
+                    &StepContext { pipeline: self.first(), targets: &self.targets, frame, prepared: self },
+                    rec,
+                );
             }
             Commands::Dispatches if has_pipelines => {
                 for slice in 0..self.slices(frame) {
@@ -258,6 +261,19 @@ impl<'a> Frame<'a> {
 }
 
 impl<'a> StepContext<'a> {
+    /// The compute pipelines of each scene, with its instances.
+    pub fn of_scenes(&self) -> Vec<(Vec<&'a ComputePipeline>, &'a InstanceRun<'a>)> {
+        let scenes = self.frame.batches.iter().filter_map(|run| {
+            let of_scene = self.prepared.pipelines.get(run.index)?.iter();
+            let compute = of_scene.filter_map(|(_, pipeline)| match pipeline {
+                Pipeline::Compute(pipeline) => Some(pipeline),
+                Pipeline::Draw(_) => None,
+            });
+            Some((compute.collect(), run))
+        });
+        scenes.collect()
+    }
+
     /// Descriptor sets of a step that reads one of the pyramids and writes one.
     pub fn pyramid_sets(&self, [from, to]: [usize; 2]) -> Vec<&'a DescriptorSet> {
         let Some(pyramids) = &self.frame.targets.pyramids else { return Vec::new() };

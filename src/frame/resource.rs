@@ -5,6 +5,8 @@
 pub enum Resource {
     /// One splat per surfel: of a scene, or on the tile path of all scenes of a frame.
     Splats,
+    /// Tile path, per scene in arbitrary order: indices of its surfels along a curve.
+    Order,
     /// Tile path: bounding boxes of splats, and of the hierarchy's nodes above them.
     Boxes,
     /// Tile path: attributes that sums read of each splat.
@@ -52,6 +54,7 @@ impl Resource {
     pub fn name(self) -> &'static str {
         match self {
             Self::Splats => "splats",
+            Self::Order => "order",
             Self::Boxes => "boxes",
             Self::Attributes => "attributes",
             Self::ScreenClips => "screen clips",
@@ -80,6 +83,7 @@ impl Resource {
         matches!(
             self,
             Self::Splats
+                | Self::Order
                 | Self::Boxes
                 | Self::Attributes
                 | Self::ScreenClips

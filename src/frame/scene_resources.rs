@@ -1,7 +1,7 @@
 //! Scene resources: splats, lists, counts and descriptor sets of a scene and all its instances.
 
 use super::pass::{Pass, Scope};
-use super::passes::{footprint, visibility};
+use super::passes::{footprint, order, visibility};
 use super::resource::Resource;
 use super::splat_buffers::{ALIGNMENT, Batches, LIST_HEADER, SPLAT, SplatBuffers};
 use super::splat_list::{ListRange, slots};
@@ -12,8 +12,12 @@ use crate::scene::{Elements, Scene};
 use crate::vk::shaders::layout::{Chunk, Counts, Splat};
 use crate::vk::shaders::{self, resource};
 use crate::vk::{Binding, Buffer, Commands, DescriptorSet, Device, Encoder, Recorder};
+use glam::Vec3;
 use std::ops::Range;
 use std::sync::Arc;
+
+/// Cells along each side of a scene's bounds, of the curve along which surfels are sorted (`order.glsl`).
+const ORDER_CELLS: f64 = 256.0;
 
 /// Resources of a scene.
 pub struct SceneResources {
@@ -30,6 +34,10 @@ pub struct SceneResources {
     counts: Option<Buffer>,
     /// Lists of large triangles, one per instance.
     large_triangles: Option<Buffer>,
+    /// Order of its surfels, chunk by chunk, if they are in arbitrary order.
+    order: Option<Buffer>,
+    /// Least corner of its bounds and cells per unit of length, of the curve along which its surfels are sorted.
+    order_cells: [[f32; 4]; 2],
     /// Views of the instances, if scenes are instanced.
     pub views: Option<Buffer>,
     chunks: Vec<Range<u64>>,
@@ -136,6 +144,8 @@ impl SceneResources {
             moved: splats(needs.moved)?,
             counts: None,
             large_triangles: triangles.map(list).transpose()?,
+            order: variant.unordered.then(|| order_of(device, scene)).transpose()?,
+            order_cells: [[0.0; 4]; 2],
             views: needs.instanced.then(views).transpose()?,
             chunks: scene.chunks().to_vec(),
             clips: clips.iter().map(|clips| clips.count as u32).collect(),
@@ -159,9 +169,18 @@ impl SceneResources {
         self.range.as_ref()
     }
 
-    /// Sets the surfel and instance counts of the next frames.
-    pub fn set_counts(&mut self, count: u64, instances: u64) {
-        (self.count, self.instances) = (count, instances);
+    /// Sets the surfel and instance counts of the next frames, and the bounds of the surfels relative to the scene's origin.
+    pub fn set_counts(&mut self, scene: &Scene, instances: u64) {
+        (self.count, self.instances) = (scene.count(), instances);
+        let bounds = scene.bounds();
+        let [low, size] = [bounds.min - scene.origin(), bounds.max - bounds.min];
+        let cells = size.to_array().map(|side| if side > 0.0 { (ORDER_CELLS / side) as f32 } else { 0.0 });
+        self.order_cells = [low.as_vec3().extend(0.0).to_array(), Vec3::from(cells).extend(0.0).to_array()];
+    }
+
+    /// Least corner of the bounds and cells per unit of length, of the curve along which the surfels are sorted.
+    pub fn order_cells(&self) -> [[f32; 4]; 2] {
+        self.order_cells
     }
 
     /// Creates the counters, if missing.
@@ -200,6 +219,10 @@ impl SceneResources {
         let surfels = |buffers: Option<&SplatBuffers>, batch: u64, index: usize| {
             let mut bindings = scene.bindings(index);
             bindings.extend(uniform_bindings(batch));
+            bindings.extend(self.order.as_ref().map(|order| {
+                let [start, bytes] = order_range(&self.chunks, index);
+                (&resource::ORDER, Binding::Storage(order, start, bytes))
+            }));
             bindings.extend(buffers.into_iter().flat_map(|splats| splats.bindings(scene, batch, index)));
             let range = self.range.as_ref().filter(|_| buffers.is_none());
             bindings.extend(range.into_iter().flat_map(|range| range.bindings(scene, batches, batch, index)));
@@ -244,6 +267,7 @@ impl SceneResources {
         });
         let other = match resource {
             Resource::Counts => self.counts.as_ref(),
+            Resource::Order => self.order.as_ref(),
             Resource::LargeTriangles => self.large_triangles.as_ref(),
             _ => None,
         };
@@ -298,7 +322,8 @@ impl SceneResources {
     /// Memory of splats and counters, bytes.
     pub fn bytes(&self) -> u64 {
         let splats = [&self.splats, &self.moved].into_iter().flatten().map(SplatBuffers::bytes);
-        splats.sum::<u64>() + self.counts.as_ref().map_or(0, Buffer::size)
+        let others = [&self.counts, &self.order].into_iter().flatten().map(Buffer::size);
+        splats.chain(others).sum()
     }
 
     /// Reads back the splats of the last frame, one per surfel, instance by instance.
@@ -311,21 +336,61 @@ impl SceneResources {
         };
         let target = Buffer::readback(device, "read splats", splats.size())?;
         Commands::new(device, false)?.run(|rec| copy_to_host(rec, splats, &target))?;
+        let order = self.order.as_ref().filter(|_| self.range.is_some());
+        let order = order.map(|order| read_words(device, order)).transpose()?;
         let of_instance = |instance: u64| {
             let start = match (&self.splats, &self.range) {
                 (Some(buffers), _) => buffers.splats_start(instance, capacity),
                 (None, Some(range)) => SPLAT * range.first_splat(capacity, &self.batches, instance),
                 (None, None) => 0,
             } as usize;
-            bytemuck::pod_collect_to_vec(&target.bytes()[start..start + size as usize])
+            let in_slots: Vec<Splat> =
+                bytemuck::pod_collect_to_vec(&target.bytes()[start..start + size as usize]);
+            match &order {
+                Some(order) => self.by_surfel(&in_slots, order),
+                None => in_slots,
+            }
         };
         Ok((0..self.instances).map(of_instance).collect())
+    }
+
+    /// Splats of an instance surfel by surfel, from those in the slots of its list.
+    fn by_surfel(&self, in_slots: &[Splat], order: &[u32]) -> Vec<Splat> {
+        let mut list = in_slots.to_vec();
+        for (index, chunk) in self.chunks.iter().enumerate() {
+            let first = order_range(&self.chunks, index)[0] as usize / 4;
+            for slot in chunk.start..chunk.end.min(self.count) {
+                let surfel = chunk.start + u64::from(order[first + (slot - chunk.start) as usize]);
+                list[surfel as usize] = in_slots[slot as usize];
+            }
+        }
+        list
     }
 
     /// Bytes of the counters; 0 if nothing is counted.
     pub fn counts_size(&self) -> u64 {
         self.counts.as_ref().map_or(0, Buffer::size)
     }
+}
+
+fn read_words(device: &Arc<Device>, buffer: &Buffer) -> Result<Vec<u32>> {
+    let target = Buffer::readback(device, "read order", buffer.size())?;
+    Commands::new(device, false)?.run(|rec| copy_to_host(rec, buffer, &target))?;
+    Ok(bytemuck::pod_collect_to_vec(target.bytes()))
+}
+
+/// Creates the buffer of the order of a scene's surfels.
+fn order_of(device: &Arc<Device>, scene: &Scene) -> Result<Buffer> {
+    let chunks = scene.chunks();
+    let end = chunks.len().checked_sub(1).map_or(0, |last| order_range(chunks, last).iter().sum());
+    Buffer::storage(device, "order", end.max(ALIGNMENT))
+}
+
+/// Start and size of a chunk's order, bytes.
+fn order_range(chunks: &[Range<u64>], index: usize) -> [u64; 2] {
+    let bytes = |chunk: &Range<u64>| order::bytes(chunk.end - chunk.start);
+    let start = chunks[..index].iter().map(|chunk| bytes(chunk).next_multiple_of(ALIGNMENT)).sum();
+    [start, bytes(&chunks[index])]
 }
 
 /// Batches of so many instances of a scene.

@@ -82,6 +82,7 @@ impl Resource {
                 &resource::FRAME_SPLATS,
                 &resource::SPLAT_TEXELS,
             ],
+            Self::Order => &[&resource::ORDER],
             Self::Boxes => &[&resource::SPLAT_BOXES, &resource::BOXES, &resource::BOX_TEXELS],
             Self::Attributes => {
                 &[&resource::SPLAT_ATTRIBUTES, &resource::FRAME_ATTRIBUTES, &resource::ATTRIBUTE_TEXELS]

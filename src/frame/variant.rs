@@ -67,6 +67,8 @@ pub struct Variant {
     pub sliced: bool,
     /// Tile path: some discs have clip lines.
     pub clips: bool,
+    /// Tile path: some scene's surfels are in arbitrary order.
+    pub unordered: bool,
     /// Tile path: some normalization weights are at the corners of surfels' squares.
     pub corners: bool,
     /// Tile path: workgroups of tile passes.
@@ -124,6 +126,8 @@ pub struct SceneVariant {
     pub unchecked: Option<ColourStream>,
     /// Scenes are instanced, each with its own axes and unit.
     pub instanced: bool,
+    /// Splats are in another order than the scene's surfels, which are in arbitrary order.
+    pub unordered: bool,
 }
 
 /// Optional streams that a scene has.
@@ -200,6 +204,7 @@ impl Variant {
                 || tiled && splatting.visibility == Visibility::Axis,
             sliced: false,
             clips: tiled && streams.iter().any(|streams| streams.clips),
+            unordered: tiled && streams.iter().any(|streams| streams.unordered),
             corners: tiled && weights && streams.iter().any(|streams| streams.weights == Some(true)),
             workgroup: TileWorkgroup::default(),
         }
@@ -344,6 +349,7 @@ impl SceneVariant {
             },
             unchecked: streams.unchecked.then_some(streams.colours),
             instanced,
+            unordered: streams.unordered && frame.is_tiled(),
         }
     }
 
@@ -364,6 +370,7 @@ impl SceneVariant {
                 (&resource::CLIPS, clips),
                 (&resource::SCREEN_CLIPS, clips),
                 (&resource::SPLATS, splats),
+                (&resource::ORDER, self.unordered),
                 (&resource::SPLAT_BOXES, frame.is_tiled()),
                 (&resource::SPLAT_ATTRIBUTES, frame.is_tiled()),
             ],
@@ -394,5 +401,6 @@ impl SceneVariant {
             .with(constant::COLOURS, self.colours as u32)
             .with(constant::VERTEX_COLOURS, self.primitives.colours as u32)
             .with(constant::INSTANCED, self.instanced)
+            .with(constant::UNORDERED, self.unordered)
     }
 }

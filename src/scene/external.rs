@@ -1,7 +1,7 @@
 //! Scenes in buffers of the host.
 
 use super::live::check_bounds;
-use super::{ColourStream, NormalStream, Scene, Stream, chunks, next_id, step};
+use super::{ColourStream, NormalStream, Order, Scene, Stream, chunks, next_id, step};
 use crate::error::{Error, Result};
 use crate::geometry::Bounds;
 use crate::vk::Device;
@@ -25,6 +25,7 @@ pub(crate) struct ExternalBuffers {
     pub count: u64,
     pub origin: DVec3,
     pub bounds: Bounds,
+    pub order: Order,
 }
 
 impl Scene {
@@ -65,6 +66,7 @@ impl Scene {
             alignment: capabilities.storage_buffer_alignment,
             origin: external.origin,
             of_host: true,
+            order: external.order,
             had_invalid: false,
             unchecked: AtomicBool::new(true),
             count: AtomicU64::new(external.count),

@@ -52,7 +52,7 @@ impl Scene {
     }
 
     /// Sets the bounds, for cameras that frame the scene. Elements beyond them are drawn all the same: frames use the bounds only to scale
-    /// sums of depths by the approximate distance of the scene.
+    /// sums of depths by the approximate distance of the scene, and to sort surfels in arbitrary order ([`crate::scene::Order`]).
     ///
     /// # Errors
     /// [`Error::Usage`] if the bounds are not finite.

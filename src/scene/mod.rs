@@ -6,6 +6,7 @@ mod external;
 pub(crate) mod instance;
 mod live;
 mod materials;
+mod order;
 mod primitives;
 mod room;
 mod similarity;
@@ -26,6 +27,7 @@ pub(crate) use external::ExternalBuffers;
 use glam::{DVec3, Vec3};
 pub use instance::{Instance, Instances};
 pub(crate) use materials::MaterialStream;
+pub use order::Order;
 pub(crate) use primitives::{Elements, PrimitiveStreams};
 use std::borrow::Cow;
 use std::ops::Range;
@@ -63,6 +65,8 @@ pub struct Scene {
     largest: Option<AtomicU32>,
     /// Whether the host owns the surfels' buffers.
     of_host: bool,
+    /// Order of the surfels.
+    order: Order,
     /// Whether some surfels were invalid at the upload.
     had_invalid: bool,
     /// Whether updates may have made surfels invalid that have a radius other than 0.
@@ -79,7 +83,8 @@ const SCALAR: u64 = 4;
 const ELLIPSE: u64 = size_of::<Ellipse>() as u64;
 
 impl Scene {
-    /// Uploads surfels, lines and triangles to `device`. Surfels are best in Morton order ([`Surfels::sort_morton`]).
+    /// Uploads surfels, lines and triangles to `device`. Surfels are best in Morton order ([`Surfels::sort_morton`]): frames by tiles sort those
+    /// that are in arbitrary order ([`Order`]) again and again.
     ///
     /// Invalid elements ([`Surfels::is_valid`], [`Primitives::is_valid`](crate::geometry::Primitives::is_valid)) are not drawn: a warning
     /// gives their number, and frames count such surfels as `invalid`.
@@ -162,6 +167,7 @@ impl Scene {
             origin: parts.origin(),
             largest: Some(AtomicU32::new(largest(&surfels.radii).to_bits())),
             of_host: false,
+            order: Order::of(&surfels.positions),
             had_invalid: invalid > 0,
             unchecked: AtomicBool::new(false),
             count: AtomicU64::new(count),
@@ -233,6 +239,8 @@ impl Scene {
             materials: self.materials.is_some(),
             layout: self.layout(),
             unchecked: self.unchecked.load(Ordering::Relaxed),
+            // Fewer buffers than every device has for shaders: clips and weights are of captured files, which are sorted.
+            unordered: self.order == Order::Arbitrary && self.clips.is_none() && self.weights.is_none(),
         }
     }
 

@@ -26,6 +26,8 @@ pub struct Streams {
     pub layout: SurfelLayout,
     /// The surfels are not validated on the CPU, so shaders validate them.
     pub unchecked: bool,
+    /// The surfels are in arbitrary order, so frames by tiles sort them.
+    pub unordered: bool,
 }
 
 impl Streams {
@@ -42,6 +44,7 @@ impl Streams {
             materials: false,
             layout: SurfelLayout::side_by_side(colours),
             unchecked: false,
+            unordered: false,
         }
     }
 

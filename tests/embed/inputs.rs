@@ -18,6 +18,7 @@ pub fn ellipses(count: usize) -> Surfels {
     paint_linear(&mut surfels, &mut random);
     forget_sides(&mut surfels, 0.4, &mut random);
     narrow(&mut surfels, &mut random);
+    surfels.sort_morton();
     Surfels { origin: DVec3::new(0.125, -0.25, 0.0), ..surfels }
 }
 

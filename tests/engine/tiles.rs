@@ -3,7 +3,8 @@
 use crate::frames::{SIZE, agrees, all_outputs, camera, largest_difference, picture_on, sphere};
 use crate::support::gpu::{assert_silent, device, render};
 use glam::Vec3;
-use surfel::geometry::Surfels;
+use surfel::frame::Splat;
+use surfel::geometry::{Colours, Surfels};
 use surfel::settings::Alpha;
 use surfel::settings::methods::Method;
 use surfel::vk::DeviceLimits;
@@ -48,6 +49,64 @@ fn every_kind_of_tile_workgroup_renders_the_same_picture() {
         DeviceLimits { max_texels: Some(4 * 4_999), ..Default::default() },
     ] {
         assert!(picture(limits).unwrap() == subgroups);
+    }
+}
+
+/// Frames by tiles sort surfels in arbitrary order: sums then have another order of terms, and nothing else differs.
+#[test]
+fn surfels_in_arbitrary_order_render_the_same_picture() {
+    let sorted = sphere(20_000);
+    let step = 7_919; // a prime
+    let order: Vec<usize> = (0..sorted.len()).map(|i| i * step % sorted.len()).collect();
+    let shuffled = Surfels {
+        positions: order.iter().map(|i| sorted.positions[*i]).collect(),
+        normals: order.iter().map(|i| sorted.normals[*i]).collect(),
+        radii: order.iter().map(|i| sorted.radii[*i]).collect(),
+        colours: match &sorted.colours {
+            Some(Colours::Srgb8(colours)) => {
+                Some(Colours::Srgb8(order.iter().map(|i| colours[*i]).collect()))
+            }
+            _ => unreachable!("the sphere has colours of 8 bits"),
+        },
+        ..sorted.clone()
+    };
+    // One chunk, and chunks of 8,192 surfels that are sorted one by one.
+    let parted = DeviceLimits { max_storage_buffer_range: Some(1 << 19), ..Default::default() };
+    for limits in
+        [DeviceLimits::default(), DeviceLimits { subgroup_size: Some(0), ..Default::default() }, parted]
+    {
+        let Some(device) = device(limits.clone()) else { return };
+        let [scene, of_sorted] = [&shuffled, &sorted].map(|surfels| Scene::upload(&device, surfels).unwrap());
+        assert!(scene.streams().unordered && !of_sorted.streams().unordered);
+        for (name, alpha) in [
+            ("perspective-ewa", Alpha::Coverage),
+            ("sprites-unfiltered", Alpha::Mask),
+            ("object-ewa", Alpha::Mask),
+        ] {
+            let settings = Settings { alpha, ..Method::named(name).unwrap().settings() };
+            let options = RenderOptions { profile: true, count: true, ..all_outputs(Rasterizer::Compute) };
+            let [mut by_order, mut expected] =
+                [options; 2].map(|options| Renderer::new(&device, options).unwrap());
+            let (picture, report) = by_order.render_picture(&scene, &camera(SIZE), &settings).unwrap();
+            let (again, _) = by_order.render_picture(&scene, &camera(SIZE), &settings).unwrap();
+            assert!(picture == again, "{name}: frames repeat");
+            let sorts = report.pass_times.iter().filter(|time| time.label == "order").count();
+            assert!(sorts > 0 || report.pass_times.is_empty(), "{name}: {:?}", report.pass_times);
+            let (of_sorted, counts) = expected.render_picture(&of_sorted, &camera(SIZE), &settings).unwrap();
+            assert_eq!(report.counts, counts.counts, "{name}");
+            // Of nearest splats at equal depths, the first wins.
+            let ties = if name == "sprites-unfiltered" { 4 } else { 0 };
+            let differ = |(a, b): (&[f32; 4], &[f32; 4])| (0..4).any(|i| (a[i] - b[i]).abs() > 2e-5);
+            let differing = picture.colour.iter().zip(&of_sorted.colour).filter(|pair| differ(*pair)).count();
+            assert!(differing <= ties, "{name}, {limits:?}: {differing} px differ");
+            let [splats, of_sorted] = [&by_order, &expected].map(|renderer| renderer.read_splats().unwrap());
+            // Nothing is written of culled splats but their anchor.
+            let ellipse = |splat: &Splat| (splat.anchor != 0).then_some((splat.anchor, splat.offset));
+            let read: Vec<_> = splats[0].iter().map(ellipse).collect();
+            let of_shuffled: Vec<_> = order.iter().map(|i| ellipse(&of_sorted[0][*i])).collect();
+            assert!(read == of_shuffled, "{name}: splats are read surfel by surfel");
+        }
+        assert_silent(&device);
     }
 }
 

@@ -4,6 +4,7 @@ use ash::vk::{self, Format};
 use glam::{DVec3, Vec3};
 use surfel::embed::{Buffers, Radii, Values};
 use surfel::geometry::{Bounds, Colours, Surfels};
+use surfel::scene::Order;
 
 /// Where a stream begins, bytes; from one value to the next, bytes; the format.
 pub type Place = (u64, u64, Format);
@@ -108,6 +109,7 @@ impl Layout {
             capacity: count,
             count,
             origin: surfels.origin,
+            order: Order::Coherent,
             bounds: surfels.bounds().unwrap_or(Bounds::of_box(DVec3::ZERO, DVec3::ONE)),
         }
     }

@@ -5,6 +5,7 @@ mod nearest;
 mod pull_push;
 
 use super::pass::Pass;
+use super::passes::order::ORDER;
 use super::variant::Variant;
 use crate::settings::Rasterizer;
 use crate::settings::splatting::Visibility;
@@ -20,13 +21,18 @@ pub enum Path {
     Subpasses { seed: bool },
 }
 
-/// Passes of a frame of `variant` with so many scenes, in order; in subpasses of a host, raster passes are last.
+/// Passes of a frame of `variant` with so many scenes, in order; in subpasses of a host, raster passes are last. If a scene's surfels are in
+/// arbitrary order, frames by tiles sort them first.
 pub fn passes(variant: &Variant, path: Path, scenes: usize) -> Vec<&'static Pass> {
-    match (variant.pull_push, variant.visibility) {
+    let mut list = match (variant.pull_push, variant.visibility) {
         (Some(settings), _) => pull_push::passes(variant, settings.storage, scenes),
         (None, Visibility::Nearest) => nearest::passes(path),
         (None, visibility) => blended::passes(path, visibility == Visibility::Axis, variant.split),
+    };
+    if variant.unordered {
+        list.insert(0, &ORDER);
     }
+    list
 }
 
 impl Path {

@@ -1,7 +1,7 @@
 //! Footprint: surfels → splats, culled and counted (zwicker2004 §4; `footprint.glsl`).
 
 use crate::frame::pass::{Commands, Domain, Pass, Program, Programs};
-use crate::frame::resource::Resource::{Attributes, Boxes, Counts, ScreenClips, Splats};
+use crate::frame::resource::Resource::{Attributes, Boxes, Counts, Order, ScreenClips, Splats};
 use crate::frame::variant::SceneVariant;
 use crate::vk::shaders::{FOOTPRINT_COMPUTE, FOOTPRINT_TILES_COMPUTE, constant};
 
@@ -17,7 +17,7 @@ fn footprint(variant: &SceneVariant) -> Program {
 /// Surfels of each scene → its splats and counters.
 pub static FOOTPRINT: Pass = Pass {
     name: "footprint",
-    reads: &[],
+    reads: &[Order],
     writes: &[Splats, Boxes, Attributes, ScreenClips, Counts],
     clears: &[Counts],
     programs: Programs::OfScene(|variant| vec![footprint(variant)]),
@@ -27,7 +27,7 @@ pub static FOOTPRINT: Pass = Pass {
 /// Footprints of discs moved by ε along the camera's axis, for visibility; not counted.
 pub static MOVED: Pass = Pass {
     name: "footprint",
-    reads: &[],
+    reads: &[Order],
     writes: &[Splats, Boxes, Attributes, ScreenClips],
     clears: &[],
     programs: Programs::OfScene(|variant| {

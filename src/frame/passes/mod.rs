@@ -10,6 +10,7 @@ pub mod fetch;
 pub mod footprint;
 pub mod nearest;
 pub mod normalize;
+pub mod order;
 pub mod project;
 pub mod pull;
 pub mod push;
@@ -70,7 +71,8 @@ mod tests {
         all
     }
 
-    const RESOURCES: [Resource; 21] = [
+    const RESOURCES: [Resource; 22] = [
+        Resource::Order,
         Resource::Splats,
         Resource::Boxes,
         Resource::ScreenClips,
@@ -109,6 +111,7 @@ mod tests {
                 materials: rich,
                 layout: SurfelLayout::side_by_side(ColourStream::None),
                 unchecked: rich,
+                unordered: rich,
             };
             for (alpha, rasterizer) in [Alpha::Mask, Alpha::Coverage]
                 .into_iter()

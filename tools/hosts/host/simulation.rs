@@ -6,6 +6,7 @@ use ash::vk;
 use glam::DVec3;
 use surfel::embed::{Buffers, READ_ACCESS, READ_STAGES, Radii, Values};
 use surfel::geometry::Bounds;
+use surfel::scene::Order;
 
 /// Bytes of a vertex.
 const STRIDE: u64 = 32;
@@ -84,6 +85,8 @@ impl Simulation {
             capacity: count,
             count,
             origin: DVec3::ZERO,
+            // Row by row: each row is a line across the surface.
+            order: Order::Coherent,
             bounds: Bounds::of_box(DVec3::new(-1.5, -0.5, -1.5), DVec3::new(1.5, 0.5, 1.5)),
         }
     }

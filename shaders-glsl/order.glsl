@@ -1,0 +1,115 @@
+// Order: sorts the surfels of a chunk along a Morton curve through the scene's bounds, by DIGIT_BITS bits of the code at a time, the lowest
+// first. The entries are divided into runs, one per invocation. A run counts its digits; the prefix sums over digits and runs (SCAN) are
+// the positions to which a run moves its entries (SCATTER). The sort is stable and has no atomics: every frame has the same order.
+#version 450
+#pragma variant SCAN
+#pragma variant SCATTER
+#extension GL_GOOGLE_include_directive : require
+
+#ifdef COMPUTE
+
+#include "lib/frame.glsl"
+#include "lib/surfels.glsl"
+#define ORDER_ACCESS
+#include "lib/order.glsl"
+
+layout(local_size_x = 64) in;
+
+// A step of the sort. The buffer has two arrays of indices, two of codes, with `capacity` entries each, and then a counter per digit and run.
+layout(push_constant) uniform OrderStep {
+    vec4 low;      // least corner of the scene's bounds
+    vec4 scale;    // cells of the curve per unit of length
+    uint count;    // surfels
+    uint capacity;
+    uint runs;
+    uint digit;    // 0 is the lowest
+} pass;
+
+const uint DIGIT_BITS = 8, DIGITS = 1 << DIGIT_BITS, LAST_DIGIT = 2;
+
+uint counter(uint digit, uint run) {
+    return 4 * pass.capacity + digit * pass.runs + run;
+}
+
+// Start of the indices that a step reads, or writes; the codes follow two arrays later. The last step writes to the first array.
+uint source() {
+    return (pass.digit & 1u) != 0 ? 0 : pass.capacity;
+}
+
+uint destination() {
+    return pass.capacity - source();
+}
+
+// Bits of a number of 8 bits, two apart.
+uint spread(uint v) {
+    v = (v | v << 8) & 0x0300f00fu;
+    v = (v | v << 4) & 0x030c30c3u;
+    return (v | v << 2) & 0x09249249u;
+}
+
+// Morton code of a position; of any cell, if it is not finite.
+uint code_of(vec3 position) {
+    uvec3 cell = uvec3(clamp((position - pass.low.xyz) * pass.scale.xyz, 0.0, 255.0)) & 255u;
+    return spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2;
+}
+
+// Code of an entry. The first count computes and stores it.
+uint code_of_entry(uint i) {
+    uint at = source() + 2 * pass.capacity + i;
+#ifndef SCATTER
+    if (pass.digit == 0) {
+        uint code = code_of(position_of(i));
+        order[at] = code;
+        return code;
+    }
+#endif
+    return order[at];
+}
+
+uint digit_of(uint code) {
+    return code >> DIGIT_BITS * pass.digit & DIGITS - 1;
+}
+
+#ifdef SCAN
+
+shared uint sums[gl_WorkGroupSize.x];
+
+// One workgroup replaces the counters by the sums of those before them.
+void main() {
+    uint lane = gl_LocalInvocationIndex, counters = DIGITS * pass.runs / gl_WorkGroupSize.x;
+    uint first = counter(0, 0) + lane * counters;
+    uint sum = 0;
+    for (uint k = 0; k < counters; k++) sum += order[first + k];
+    sums[lane] = sum;
+    barrier();
+    uint before = 0;
+    for (uint k = 0; k < gl_WorkGroupSize.x; k++) before += k < lane ? sums[k] : 0;
+    for (uint k = 0; k < counters; k++) {
+        uint count = order[first + k];
+        order[first + k] = before;
+        before += count;
+    }
+}
+
+#else
+
+void main() {
+    uint run = gl_GlobalInvocationID.x;
+    if (run >= pass.runs) return;
+    uint length = (pass.count + pass.runs - 1) / pass.runs;
+    uint first = run * length, end = min(first + length, pass.count);
+#ifndef SCATTER
+    for (uint digit = 0; digit < DIGITS; digit++) order[counter(digit, run)] = 0;
+#endif
+    for (uint i = first; i < end; i++) {
+        uint code = code_of_entry(i), at = counter(digit_of(code), run), position = order[at];
+        order[at] = position + 1;
+#ifdef SCATTER
+        order[destination() + position] = pass.digit == 0 ? i : order[source() + i];
+        if (pass.digit < LAST_DIGIT) order[destination() + 2 * pass.capacity + position] = code;
+#endif
+    }
+}
+
+#endif
+#endif
