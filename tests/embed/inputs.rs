@@ -8,6 +8,7 @@ pub fn sphere(count: usize) -> Surfels {
     let mut random = Random(11);
     let mut surfels = bumpy_sphere(count, &mut random);
     paint_srgb(&mut surfels, &mut random);
+    surfels.sort_morton();
     surfels
 }
 
