@@ -1,6 +1,7 @@
 // Order: sorts the surfels of a chunk along a Morton curve through the scene's bounds, by DIGIT_BITS bits of the code at a time, the lowest
 // first. The entries are divided into runs, one per invocation. A run counts its digits; the prefix sums over digits and runs (SCAN) are
-// the positions to which a run moves its entries (SCATTER). The sort is stable and has no atomics: every frame has the same order.
+// the positions to which a run moves its entries (SCATTER). The sort is stable and has no atomics: every frame has the same order. Runs are
+// few and long, for the threads of a CPU device: on GPUs, which take the raster path by default, it is not fast.
 #version 450
 #pragma variant SCAN
 #pragma variant SCATTER
@@ -17,15 +18,14 @@ layout(local_size_x = 64) in;
 
 // A step of the sort. The buffer has two arrays of indices, two of codes, with `capacity` entries each, and then a counter per digit and run.
 layout(push_constant) uniform OrderStep {
-    vec4 low;      // least corner of the scene's bounds
-    vec4 scale;    // cells of the curve per unit of length
+    vec4 curve;    // least corner of the scene's bounds; cells of the curve per unit of length
     uint count;    // surfels
     uint capacity;
     uint runs;
     uint digit;    // 0 is the lowest
 } pass;
 
-const uint DIGIT_BITS = 8, DIGITS = 1 << DIGIT_BITS, LAST_DIGIT = 2;
+const uint DIGIT_BITS = 8, DIGITS = 1 << DIGIT_BITS, LAST_DIGIT = 3;
 
 uint counter(uint digit, uint run) {
     return 4 * pass.capacity + digit * pass.runs + run;
@@ -33,15 +33,16 @@ uint counter(uint digit, uint run) {
 
 // Start of the indices that a step reads, or writes; the codes follow two arrays later. The last step writes to the first array.
 uint source() {
-    return (pass.digit & 1u) != 0 ? 0 : pass.capacity;
+    return (pass.digit & 1u) != 0 ? pass.capacity : 0;
 }
 
 uint destination() {
     return pass.capacity - source();
 }
 
-// Bits of a number of 8 bits, two apart.
+// Bits of a number of 10 bits, two apart.
 uint spread(uint v) {
+    v = (v | v << 16) & 0x030000ffu;
     v = (v | v << 8) & 0x0300f00fu;
     v = (v | v << 4) & 0x030c30c3u;
     return (v | v << 2) & 0x09249249u;
@@ -49,7 +50,7 @@ uint spread(uint v) {
 
 // Morton code of a position; of any cell, if it is not finite.
 uint code_of(vec3 position) {
-    uvec3 cell = uvec3(clamp((position - pass.low.xyz) * pass.scale.xyz, 0.0, 255.0)) & 255u;
+    uvec3 cell = uvec3(clamp((position - pass.curve.xyz) * pass.curve.w, 0.0, 1023.0)) & 1023u;
     return spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2;
 }
 

@@ -1689,30 +1689,27 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Materials, count) == 0);
     const _: () = assert!(std::mem::size_of::<Materials>() == 4);
 
-    /// `OrderStep`, 48 bytes, first in `shaders-glsl/order.glsl`.
+    /// `OrderStep`, 32 bytes, first in `shaders-glsl/order.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct OrderStep {
         /// Byte 0.
-        pub low: [f32; 4],
+        pub curve: [f32; 4],
         /// Byte 16.
-        pub scale: [f32; 4],
-        /// Byte 32.
         pub count: u32,
-        /// Byte 36.
+        /// Byte 20.
         pub capacity: u32,
-        /// Byte 40.
+        /// Byte 24.
         pub runs: u32,
-        /// Byte 44.
+        /// Byte 28.
         pub digit: u32,
     }
-    const _: () = assert!(std::mem::offset_of!(OrderStep, low) == 0);
-    const _: () = assert!(std::mem::offset_of!(OrderStep, scale) == 16);
-    const _: () = assert!(std::mem::offset_of!(OrderStep, count) == 32);
-    const _: () = assert!(std::mem::offset_of!(OrderStep, capacity) == 36);
-    const _: () = assert!(std::mem::offset_of!(OrderStep, runs) == 40);
-    const _: () = assert!(std::mem::offset_of!(OrderStep, digit) == 44);
-    const _: () = assert!(std::mem::size_of::<OrderStep>() == 48);
+    const _: () = assert!(std::mem::offset_of!(OrderStep, curve) == 0);
+    const _: () = assert!(std::mem::offset_of!(OrderStep, count) == 16);
+    const _: () = assert!(std::mem::offset_of!(OrderStep, capacity) == 20);
+    const _: () = assert!(std::mem::offset_of!(OrderStep, runs) == 24);
+    const _: () = assert!(std::mem::offset_of!(OrderStep, digit) == 28);
+    const _: () = assert!(std::mem::size_of::<OrderStep>() == 32);
 
     /// `ScalarOptions`, 8 bytes, first in `shaders-glsl/colour_map.glsl`.
     #[repr(C)]

@@ -87,7 +87,7 @@ Words pack_sample(Sample s) {
     return words;
 }
 
-// Empty samples are zeros, and are unpacked like others: divergent branches cost more than they skip.
+// Empty samples have near = 0, and are unpacked like others: divergent branches cost more than they skip.
 Sample unpack_sample(Words words) {
     const uint first = ID_WORD - COLOUR_WORDS;
     uvec3 bits = uvec3(0);

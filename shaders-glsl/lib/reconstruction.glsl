@@ -29,6 +29,8 @@ struct Sums {
 // Candidate k of a pixel. Its displacement is relative to the pixel's centre.
 Sample candidate(uint k, ivec2 pixel) {
     bool coarser = k < COARSER;
+    // Nothing is coarser than the top level.
+    if (coarser && pass.adjacent_size.x == 0) return NO_SAMPLE;
     ivec2 step = 2 * (pixel & 1) - 1;
     ivec2 from_pixel = coarser ? pixel / 2 + step * ivec2(k & 1, k >> 1) : pixel + ivec2((k - 4) % 3, (k - 4) / 3) - 1;
     ivec2 size = coarser ? pass.adjacent_size : pass.size;
@@ -115,7 +117,8 @@ Sample reconstructed(ivec2 pixel) {
     Sums sums = Sums(NO_SAMPLE, PAPER ? 0.0 : -1e38, NO_SAMPLE, 0.0, 0.0, vec2(0.0), vec3(0.0), vec2(0.0), vec2(0.0));
     Sample samples[13];
     float weights[13];
-    // Unrolled by hand: compilers unroll shorter bodies only, and arrays with a dynamic index are memory.
+    // Unrolled by hand: compilers unroll shorter bodies only, and arrays with a dynamic index are memory. On lavapipe a fetch costs more than
+    // the registers; a GPU with few of them may prefer to fetch twice.
 #define WEIGHT(K)                                                                  \
     if (K < CANDIDATES) {                                                            \
         samples[K] = candidate(K, pixel);                                          \

@@ -55,7 +55,10 @@ pub fn render(
     let start = Instant::now();
     let (picture, report) = renderer.render_picture(&scene, &task.camera, &task.settings)?;
     times.add(start.elapsed(), &report.pass_times);
-    let mut split = task.split.then(|| Split::new(&device, &renderer, options)).transpose()?;
+    let mut split = task
+        .split
+        .then(|| Split::new(&device, &renderer, options, task.settings.pull_push.is_some()))
+        .transpose()?;
     for frame in 1..task.frames {
         task.progress.at(FRAMES, frame.into(), task.frames.into());
         let start = Instant::now();
@@ -81,8 +84,13 @@ struct Split {
 }
 
 impl Split {
-    fn new(device: &Arc<Device>, fused: &Renderer, options: RenderOptions) -> Result<Self> {
-        if fused.rasterizer() != Some(Rasterizer::Compute) {
+    fn new(
+        device: &Arc<Device>,
+        fused: &Renderer,
+        options: RenderOptions,
+        of_pull_push: bool,
+    ) -> Result<Self> {
+        if fused.rasterizer() != Some(Rasterizer::Compute) && !of_pull_push {
             let text = "--times=split is of passes over tiles or of push and shade, which this frame has none of: choose --rasterizer compute";
             return Err(Error::Usage(text.into()));
         }

@@ -185,8 +185,8 @@ impl Pipelines {
         DrawPipeline::of_host(device, sets, code, &constants, &draw.within, draw.depth).map(Some)
     }
 
-    /// Layouts of descriptor sets 0, 1, … of a program: frame or scene, targets, counts or the pyramid that is written, and the pyramid
-    /// that is read.
+    /// Layouts of descriptor sets 0, 1, … of a program: frame or scene; targets; counts, or the pyramid that is written, or the final one
+    /// that shade reads; and the pyramid that is read.
     fn layouts(
         &self,
         device: &Arc<Device>,

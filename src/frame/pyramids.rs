@@ -66,6 +66,9 @@ pub(super) struct WordFormat {
     pub ids: bool,
 }
 
+/// Bytes of the nearest point of a pixel.
+pub const NEAREST_POINT: u64 = 8;
+
 /// Most images of a pyramid: three of four words a texel, two of one.
 const IMAGES: usize = 5;
 
@@ -306,14 +309,14 @@ impl Pyramids {
         grid_over_pixels(self.levels.size_of(level))
     }
 
-    /// Whether pyramids of this size, and their nearest points, fit a device.
-    pub fn fit(capabilities: &Capabilities, size: [u32; 2]) -> bool {
+    /// Whether pyramids of this size fit a device, and their nearest points, unless these are rasterized.
+    pub fn fit(capabilities: &Capabilities, size: [u32; 2], rasterized: bool) -> bool {
         let images = Levels::of(size).extent().iter().all(|side| *side <= capabilities.max_image_side);
-        images && pixel_bytes(Format::R64_UINT) * pixels_of(size) <= capabilities.max_storage_buffer_range
+        images && (rasterized || NEAREST_POINT * pixels_of(size) <= capabilities.max_storage_buffer_range)
     }
 
     /// Largest size of about that aspect ratio whose pyramids fit; at least 1×1.
-    pub fn largest(capabilities: &Capabilities, options: &RenderOptions) -> [u32; 2] {
+    pub fn largest(capabilities: &Capabilities, options: &RenderOptions, rasterized: bool) -> [u32; 2] {
         let size = options.size;
         let longest = size[0].max(size[1]);
         let shrunk = |side: u32| {
@@ -322,7 +325,7 @@ impl Pyramids {
         let (mut fitting, mut too_large) = (1, longest + 1);
         while too_large - fitting > 1 {
             let middle = fitting + (too_large - fitting) / 2;
-            match Self::fit(capabilities, shrunk(middle)) {
+            match Self::fit(capabilities, shrunk(middle), rasterized) {
                 true => fitting = middle,
                 false => too_large = middle,
             }

@@ -71,9 +71,13 @@ fn rasterizer_of_points(
             "pull-push needs 64-bit atomics in buffers for {what}, which {name} does not have: {remedy}"
         )))
     };
+    let primitives = scenes.iter().any(|placed| placed.scene.primitives.is_some());
+    let rasterized = options.rasterizer == Some(Rasterizer::Draw) && !primitives;
     match options.rasterizer {
-        _ if !Pyramids::fit(capabilities, options.size) => Err(too_large(device, options)),
-        _ if scenes.iter().any(|placed| placed.scene.primitives.is_some()) && !capabilities.int64_atomics => {
+        _ if !Pyramids::fit(capabilities, options.size, rasterized) => {
+            Err(too_large(device, options, rasterized))
+        }
+        _ if primitives && !capabilities.int64_atomics => {
             refuse("lines and triangles", "leave them out, or choose another device")
         }
         Some(Rasterizer::Compute) if !capabilities.int64_atomics => {
@@ -88,10 +92,10 @@ fn rasterizer_of_points(
 }
 
 /// Error: the pyramids do not fit the device; names a size that does.
-fn too_large(device: &Device, options: &RenderOptions) -> Error {
+fn too_large(device: &Device, options: &RenderOptions, rasterized: bool) -> Error {
     let capabilities = device.capabilities();
     let ([width, height], [most_width, most_height]) =
-        (options.size, Pyramids::largest(capabilities, options));
+        (options.size, Pyramids::largest(capabilities, options, rasterized));
     Error::Usage(format!(
         "the pyramids of a picture of {width}x{height} px do not fit the images of {} (at most {} px wide and high), or its nearest points \
          the {} bytes of a storage buffer: choose at most {most_width}x{most_height} px",

@@ -174,8 +174,8 @@ impl Renderer {
             .collect())
     }
 
-    /// Reads back the pyramids of the last frame: pulled and pushed levels, fine to coarse; `None` unless it was of pull–push. An error if it
-    /// did not store level 0 of the pushed pyramid, as with [`RenderOptions::split`].
+    /// Reads back the pyramids of the last frame: pulled and pushed levels, fine to coarse; `None` unless it was of pull–push. An error
+    /// unless it stored level 0 of the pushed pyramid: [`RenderOptions::split`] stores it.
     pub fn read_pyramids(&self) -> Result<Option<[Vec<PyramidLevel>; 2]>> {
         let pyramids = self.frame.current().and_then(|current| current.targets.pyramids.as_ref());
         pyramids.map(|pyramids| pyramids.read(self.frame.device())).transpose()

@@ -347,7 +347,7 @@ impl FrameResources {
         }
         updated?;
         for ((resources, scene), instances) in scenes.current_mut().zip(list).zip(counts) {
-            resources.set_counts(scene, instances);
+            resources.set_frame(scene, instances);
             if variant.count {
                 resources.make_counts(device)?;
             }

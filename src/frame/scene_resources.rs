@@ -12,12 +12,11 @@ use crate::scene::{Elements, Scene};
 use crate::vk::shaders::layout::{Chunk, Counts, Splat};
 use crate::vk::shaders::{self, resource};
 use crate::vk::{Binding, Buffer, Commands, DescriptorSet, Device, Encoder, Recorder};
-use glam::Vec3;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Cells along each side of a scene's bounds, of the curve along which surfels are sorted (`order.glsl`).
-const ORDER_CELLS: f64 = 256.0;
+/// Cells along the longest side of a scene, of the curve along which surfels are sorted (`order.glsl`).
+const CELLS: f32 = 1024.0;
 
 /// Resources of a scene.
 pub struct SceneResources {
@@ -36,8 +35,8 @@ pub struct SceneResources {
     large_triangles: Option<Buffer>,
     /// Order of its surfels, chunk by chunk, if they are in arbitrary order.
     order: Option<Buffer>,
-    /// Least corner of its bounds and cells per unit of length, of the curve along which its surfels are sorted.
-    order_cells: [[f32; 4]; 2],
+    /// Of the curve along which its surfels are sorted: least corner, and cells per unit of length.
+    curve: [f32; 4],
     /// Views of the instances, if scenes are instanced.
     pub views: Option<Buffer>,
     chunks: Vec<Range<u64>>,
@@ -145,7 +144,7 @@ impl SceneResources {
             counts: None,
             large_triangles: triangles.map(list).transpose()?,
             order: variant.unordered.then(|| order_of(device, scene)).transpose()?,
-            order_cells: [[0.0; 4]; 2],
+            curve: [0.0; 4],
             views: needs.instanced.then(views).transpose()?,
             chunks: scene.chunks().to_vec(),
             clips: clips.iter().map(|clips| clips.count as u32).collect(),
@@ -169,18 +168,19 @@ impl SceneResources {
         self.range.as_ref()
     }
 
-    /// Sets the surfel and instance counts of the next frames, and the bounds of the surfels relative to the scene's origin.
-    pub fn set_counts(&mut self, scene: &Scene, instances: u64) {
+    /// Sets the surfel and instance counts of the next frames, and the curve along which the scene's surfels are sorted.
+    pub fn set_frame(&mut self, scene: &Scene, instances: u64) {
         (self.count, self.instances) = (scene.count(), instances);
-        let bounds = scene.bounds();
-        let [low, size] = [bounds.min - scene.origin(), bounds.max - bounds.min];
-        let cells = size.to_array().map(|side| if side > 0.0 { (ORDER_CELLS / side) as f32 } else { 0.0 });
-        self.order_cells = [low.as_vec3().extend(0.0).to_array(), Vec3::from(cells).extend(0.0).to_array()];
+        let [low, high] = scene.curve_box();
+        // Cubic cells, as a surface needs no digits for what is thin.
+        let side = (high - low).max_element();
+        let cells = if side > 0.0 { CELLS / side } else { 0.0 };
+        self.curve = low.extend(cells).to_array();
     }
 
-    /// Least corner of the bounds and cells per unit of length, of the curve along which the surfels are sorted.
-    pub fn order_cells(&self) -> [[f32; 4]; 2] {
-        self.order_cells
+    /// Of the curve along which the surfels are sorted: least corner, and cells per unit of length.
+    pub fn curve(&self) -> [f32; 4] {
+        self.curve
     }
 
     /// Creates the counters, if missing.
@@ -319,7 +319,7 @@ impl SceneResources {
         self.counts.as_ref().map_or(Counts { culled: [0; 5] }, |counts| counts_in(counts.bytes()))
     }
 
-    /// Memory of splats and counters, bytes.
+    /// Memory of splats, counters and order, bytes.
     pub fn bytes(&self) -> u64 {
         let splats = [&self.splats, &self.moved].into_iter().flatten().map(SplatBuffers::bytes);
         let others = [&self.counts, &self.order].into_iter().flatten().map(Buffer::size);

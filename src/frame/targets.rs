@@ -1,7 +1,7 @@
 //! Render targets: name, format, binding, and the frames that have them.
 
 use super::pass::{DrawTargets, InitialContents, Pass};
-use super::pyramids::Pyramids;
+use super::pyramids::{NEAREST_POINT, Pyramids};
 use super::resource::Resource;
 use super::variant::Variant;
 use crate::error::{Error, Result};
@@ -218,7 +218,7 @@ fn pull_push_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
     let raster_target = |resource, format, shader| {
         variant.has_raster_points().then(|| image(resource, format, ImageUse::Sampled, Some(shader)))
     };
-    let nearest = pixels(Resource::Nearest, Format::R64_UINT, 8, &resource::NEAREST);
+    let nearest = pixels(Resource::Nearest, Format::R64_UINT, NEAREST_POINT, &resource::NEAREST);
     let points = [
         variant.has_compute_points().then_some(nearest),
         raster_target(Resource::NearestDepth, Format::D32_SFLOAT, &resource::NEAREST_DEPTH),

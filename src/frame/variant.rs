@@ -61,7 +61,7 @@ pub struct Variant {
     pub precision: Precision,
     /// Rasterizer of splats and points; lines and triangles always take the compute path.
     pub rasterizer: Rasterizer,
-    /// Tile path: visibility, attribute and normalize are separate passes.
+    /// Visibility, attribute and normalize are separate passes on the tile path, and so are push and shade on all levels.
     pub split: bool,
     /// Tile path: dispatches are sliced, because a tile may have more splats than one dispatch visits.
     pub sliced: bool,

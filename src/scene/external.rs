@@ -67,6 +67,7 @@ impl Scene {
             origin: external.origin,
             of_host: true,
             order: external.order,
+            curve_box: None,
             had_invalid: false,
             unchecked: AtomicBool::new(true),
             count: AtomicU64::new(external.count),

@@ -67,6 +67,8 @@ pub struct Scene {
     of_host: bool,
     /// Order of the surfels.
     order: Order,
+    /// Box of the curve along which they are sorted, relative to the origin; `None`: the bounds.
+    curve_box: Option<[Vec3; 2]>,
     /// Whether some surfels were invalid at the upload.
     had_invalid: bool,
     /// Whether updates may have made surfels invalid that have a radius other than 0.
@@ -168,6 +170,7 @@ impl Scene {
             largest: Some(AtomicU32::new(largest(&surfels.radii).to_bits())),
             of_host: false,
             order: Order::of(&surfels.positions),
+            curve_box: order::bulk(&surfels.positions),
             had_invalid: invalid > 0,
             unchecked: AtomicBool::new(false),
             count: AtomicU64::new(count),
@@ -255,6 +258,15 @@ impl Scene {
             colours: self.colours.as_ref().map_or(usual.colours, words),
             ellipses: self.ellipses.as_ref().map_or(usual.ellipses, words),
         }
+    }
+
+    /// Corners of the box of the curve along which surfels in arbitrary order are sorted, relative to the origin.
+    pub(crate) fn curve_box(&self) -> [Vec3; 2] {
+        let bounds = || {
+            let bounds = self.bounds();
+            [bounds.min, bounds.max].map(|corner| (corner - self.origin).as_vec3())
+        };
+        self.curve_box.unwrap_or_else(bounds)
     }
 
     /// The clips of each chunk, if any.

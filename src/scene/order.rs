@@ -2,14 +2,15 @@
 
 use glam::Vec3;
 
-/// Order of a scene's surfels. Frames by tiles skip consecutive surfels together, so these should be close together; other frames do not
+/// Order of a scene's surfels. Uploads are measured once: updates do not change it. Frames by tiles skip consecutive surfels together, so these should be close together; other frames do not
 /// depend on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Order {
     /// Consecutive surfels are close together, as along a Morton curve ([`crate::geometry::Surfels::sort_morton`]).
     Coherent,
     /// Any order, or one that motion dissolves: each frame by tiles sorts the surfels on the device, in 16 bytes a surfel. Surfels with clip
-    /// lines or normalization weights are not sorted.
+    /// lines or normalization weights are not sorted. The curve has 1024 cells along the longest side of the scene's bounds: bounds that are
+    /// far too wide make it useless.
     #[default]
     Arbitrary,
 }
@@ -21,28 +22,68 @@ const BLOCKS: [(usize, f32); 2] = [(8, 4.0), (512, 32.0)];
 impl Order {
     /// The order of these positions, by the extents of blocks of consecutive ones.
     pub(super) fn of(positions: &[Vec3]) -> Self {
-        let whole = extent(positions);
         let is_arbitrary = |(block, most): (usize, f32)| {
             let blocks = positions.chunks_exact(block);
-            let count = blocks.len().max(1) as f32;
-            let mean = blocks.map(extent).sum::<f32>() / count;
+            let count = blocks.len();
+            // Positions from everywhere; the median, as a few may be far from all others.
+            let stride = count.div_ceil(SETS).max(1);
+            let apart = |first: usize| extent(positions.iter().skip(first).step_by(count).take(block));
+            let mut wholes: Vec<_> = (0..count).step_by(stride).map(apart).collect();
+            wholes.sort_by(f32::total_cmp);
+            let whole = wholes.get(wholes.len() / 2).copied().unwrap_or_default();
+            let mean = blocks.map(|block| extent(block.iter()).min(whole)).sum::<f32>() / count as f32;
             // A block of a surface takes 1 / count of its area.
-            mean > most * whole / count.sqrt()
+            mean > most * whole / (count as f32).sqrt()
         };
         if BLOCKS.into_iter().any(is_arbitrary) { Self::Arbitrary } else { Self::Coherent }
     }
 }
 
+/// Sets of positions from everywhere, whose extents are measured.
+const SETS: usize = 64;
+
 /// Diagonal of the bounds of those that are finite.
-fn extent(positions: &[Vec3]) -> f32 {
-    let finite = positions.iter().filter(|position| position.is_finite());
+fn extent<'a>(positions: impl Iterator<Item = &'a Vec3>) -> f32 {
+    let finite = positions.filter(|position| position.is_finite());
     let bounds = finite.map(|p| (*p, *p)).reduce(|(low, high), (p, _)| (low.min(p), high.max(p)));
     bounds.map_or(0.0, |(low, high)| low.distance(high))
+}
+
+/// Positions that are sampled for a box.
+const SAMPLES: usize = 4096;
+/// Part of the samples beyond each side of the box, which is then grown by a quarter.
+const STRAYS: usize = 256;
+
+/// Box of nearly all of these positions: a few far away do not widen it. `None` without finite ones.
+pub(super) fn bulk(positions: &[Vec3]) -> Option<[Vec3; 2]> {
+    let step = positions.len().div_ceil(SAMPLES).max(1);
+    let samples: Vec<_> = positions.iter().step_by(step).filter(|position| position.is_finite()).collect();
+    let sides = [0, 1, 2].map(|axis| {
+        let mut values: Vec<_> = samples.iter().map(|position| position[axis]).collect();
+        values.sort_by(f32::total_cmp);
+        let strays = values.len() / STRAYS;
+        Some([*values.get(strays)?, *values.get(values.len() - 1 - strays)?])
+    });
+    let [[x, x_end], [y, y_end], [z, z_end]] = [sides[0]?, sides[1]?, sides[2]?];
+    let (low, high) = (Vec3::new(x, y, z), Vec3::new(x_end, y_end, z_end));
+    let margin = 0.25 * (high - low);
+    Some([low - margin, high + margin])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn strays_do_not_widen_the_box() {
+        let mut positions: Vec<_> = (0..1000).map(|i| Vec3::new(i as f32, 0.0, -1.0)).collect();
+        positions[10] = Vec3::splat(1e9);
+        positions[20] = Vec3::NAN;
+        let [low, high] = bulk(&positions).unwrap();
+        assert!(low.x > -260.0 && high.x < 1260.0 && high.x - low.x > 1400.0, "{low} {high}");
+        assert_eq!((low.z, high.z), (-1.0, -1.0));
+        assert_eq!(bulk(&[]), None);
+    }
 
     #[test]
     fn a_shuffled_surface_is_in_arbitrary_order() {
@@ -59,6 +100,9 @@ mod tests {
         let step = 40_503; // coprime to the count
         let shuffled: Vec<_> = (0..positions.len()).map(|i| positions[i * step % positions.len()]).collect();
         assert_eq!(Order::of(&shuffled), Order::Arbitrary);
+        let mut with_stray = shuffled.clone();
+        with_stray[100] = Vec3::splat(1e6);
+        assert_eq!(Order::of(&with_stray), Order::Arbitrary);
         assert_eq!(Order::of(&positions[..7]), Order::Coherent);
         assert_eq!(Order::of(&[Vec3::NAN; 1024]), Order::Coherent);
     }

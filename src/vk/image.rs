@@ -40,10 +40,7 @@ pub fn pixel_bytes(format: vk::Format) -> u64 {
         vk::Format::R32G32B32A32_SFLOAT | vk::Format::R32G32B32A32_UINT => 16,
         vk::Format::R32G32B32_SFLOAT => 12,
         vk::Format::D32_SFLOAT_S8_UINT => 5,
-        vk::Format::R16G16B16A16_SFLOAT
-        | vk::Format::R32G32_SFLOAT
-        | vk::Format::R32G32_UINT
-        | vk::Format::R64_UINT => 8,
+        vk::Format::R16G16B16A16_SFLOAT | vk::Format::R32G32_SFLOAT | vk::Format::R32G32_UINT => 8,
         vk::Format::R16_SFLOAT => 2,
         _ => 4,
     }

@@ -7,6 +7,7 @@ use surfel::frame::Splat;
 use surfel::geometry::{Colours, Surfels};
 use surfel::settings::Alpha;
 use surfel::settings::methods::Method;
+use surfel::verify::scenes::bumpy_sphere;
 use surfel::vk::DeviceLimits;
 use surfel::{Error, Rasterizer, RenderOptions, Renderer, Scene, Settings};
 
@@ -50,6 +51,30 @@ fn every_kind_of_tile_workgroup_renders_the_same_picture() {
     ] {
         assert!(picture(limits).unwrap() == subgroups);
     }
+}
+
+/// Surfels in arbitrary order whose boxes are not sorted would exceed the bound on the steps of a tile, which sorted ones do not reach.
+#[test]
+fn a_sort_puts_surfels_beside_their_neighbours() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let random = bumpy_sphere::sample(20_000, 1);
+    let mut stray = random.clone();
+    stray.positions[100] = Vec3::splat(1e4);
+    let mut flat = random.clone();
+    flat.positions.iter_mut().for_each(|position| position.y *= 0.01);
+    for (name, surfels) in [("sphere", random), ("with a stray point", stray), ("flat", flat)] {
+        let mut sorted = surfels.clone();
+        sorted.sort_morton();
+        for (scene, surfels) in [("in Morton order", &sorted), ("in random order", &surfels)] {
+            let scene_of = Scene::upload(&device, surfels).unwrap();
+            let options = RenderOptions { most_splats: Some(MOST), ..all_outputs(Rasterizer::Compute) };
+            let mut renderer = Renderer::new(&device, options).unwrap();
+            let report = renderer.render(&scene_of, &camera(SIZE), &Settings::default()).unwrap();
+            assert!(!report.incomplete, "{name} {scene}");
+        }
+    }
+    assert_silent(&device);
+    const MOST: u32 = 2_000;
 }
 
 /// Frames by tiles sort surfels in arbitrary order: sums then have another order of terms, and nothing else differs.

@@ -5,7 +5,7 @@ use crate::frame::pass::{Commands, Domain, Pass, Program, Programs, StepContext}
 use crate::frame::recording::row_over;
 use crate::frame::resource::Resource::Order;
 use crate::frame::scene_resources::ChunkRun;
-use crate::vk::shaders::layout::OrderStep;
+use crate::vk::shaders::layout::{Chunk, OrderStep};
 use crate::vk::shaders::{ORDER_COMPUTE, ORDER_SCAN_COMPUTE, ORDER_SCATTER_COMPUTE};
 use crate::vk::{Access, ComputePipeline, Recorder};
 
@@ -23,8 +23,13 @@ pub static ORDER: Pass = Pass {
     commands: Commands::Steps(record),
 };
 
-/// Digits of a code of 24 bits: DIGIT_BITS of `order.glsl`.
-const DIGITS: u32 = 3;
+/// Indices of the programs.
+const COUNT: usize = 0;
+const SCAN: usize = 1;
+const SCATTER: usize = 2;
+
+/// Digits of a code of 30 bits: LAST_DIGIT of `order.glsl`.
+const DIGITS: u32 = 4;
 /// Values of a digit.
 const DIGIT_VALUES: u64 = 1 << 8;
 /// Most runs of entries, one per invocation.
@@ -43,32 +48,32 @@ pub fn bytes(surfels: u64) -> u64 {
     SURFEL * surfels + 4 * DIGIT_VALUES * runs(surfels)
 }
 
-fn record(steps: &StepContext<'_>, rec: &mut Recorder<'_>) {
-    for (pipelines, run) in steps.of_scenes() {
-        let [count, scan, scatter] = pipelines[..] else { continue };
-        // The order is that of all instances.
-        let sorted = run.chunks(Domain::Surfels.scope(), &ORDER).into_iter().filter(|_| run.first == 0);
-        for chunk in sorted.filter(|chunk| chunk.chunk.count > 0) {
-            sort(steps, rec, [count, scan, scatter], &chunk, run.scene.order_cells());
-        }
-    }
-}
+/// The sort of a chunk of a scene: its pipelines, and the chunk.
+type Sort<'a> = ([&'a ComputePipeline; 3], ChunkRun<'a>, [f32; 4]);
 
-fn sort(
-    steps: &StepContext<'_>,
-    rec: &mut Recorder<'_>,
-    [count, scan, scatter]: [&ComputePipeline; 3],
-    run: &ChunkRun<'_>,
-    [low, scale]: [[f32; 4]; 2],
-) {
-    let (surfels, capacity) = (run.chunk.count, run.chunk.capacity);
-    let runs = runs(capacity.into()) as u32;
-    let grid = row_over(runs.into());
-    for digit in 0..DIGITS {
-        let step = OrderStep { low, scale, count: surfels, capacity, runs, digit };
-        for (pipeline, grid) in [(count, grid), (scan, [1, 1, 1]), (scatter, grid)] {
-            let mut enc = rec.pass(ORDER.name, &steps.frame.uses(&[(Order, Access::COMPUTE_WRITE)]));
-            enc.dispatch(pipeline, &[run.set], &step, grid);
+fn record(steps: &StepContext<'_>, rec: &mut Recorder<'_>) {
+    let mut sorts: Vec<Sort<'_>> = Vec::new();
+    for (pipelines, run) in steps.of_scenes() {
+        // The order is that of all instances.
+        let (&[count, scan, scatter], 0) = (&pipelines[..], run.first) else { continue };
+        let chunks = run.chunks(Domain::Surfels.scope(), &ORDER).into_iter();
+        let sorted = chunks.filter(|chunk| chunk.chunk.count > 0);
+        sorts.extend(sorted.map(|chunk| ([count, scan, scatter], chunk, run.scene.curve())));
+    }
+    if sorts.is_empty() {
+        return;
+    }
+    let uses = steps.frame.uses(&[(Order, Access::COMPUTE_WRITE)]);
+    for (digit, program) in
+        (0..DIGITS).flat_map(|digit| [COUNT, SCAN, SCATTER].map(|program| (digit, program)))
+    {
+        let mut enc = rec.pass(ORDER.name, &uses);
+        for (pipelines, run, curve) in &sorts {
+            let Chunk { count, capacity, .. } = run.chunk;
+            let runs = runs(capacity.into()) as u32;
+            let step = OrderStep { curve: *curve, count, capacity, runs, digit };
+            let grid = if program == SCAN { [1, 1, 1] } else { row_over(runs.into()) };
+            enc.dispatch(pipelines[program], &[run.set], &step, grid);
         }
     }
 }
