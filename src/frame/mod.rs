@@ -47,6 +47,7 @@ pub(crate) mod scene_resources;
 mod slicing;
 mod splat_buffers;
 pub(crate) mod splat_list;
+mod surfel_order;
 pub(crate) mod targets;
 pub mod times;
 pub(crate) mod uniforms;

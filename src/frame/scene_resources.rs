@@ -1,10 +1,11 @@
 //! Scene resources: splats, lists, counts and descriptor sets of a scene and all its instances.
 
 use super::pass::{Pass, Scope};
-use super::passes::{footprint, order, visibility};
+use super::passes::{footprint, visibility};
 use super::resource::Resource;
 use super::splat_buffers::{ALIGNMENT, Batches, LIST_HEADER, SPLAT, SplatBuffers};
 use super::splat_list::{ListRange, slots};
+use super::surfel_order::SurfelOrder;
 use super::uniforms::{self, VIEW};
 use super::variant::SceneVariant;
 use crate::error::Result;
@@ -14,9 +15,6 @@ use crate::vk::shaders::{self, resource};
 use crate::vk::{Binding, Buffer, Commands, DescriptorSet, Device, Encoder, Recorder};
 use std::ops::Range;
 use std::sync::Arc;
-
-/// Cells along the longest side of a scene, of the curve along which surfels are sorted (`order.glsl`).
-const CELLS: f32 = 1024.0;
 
 /// Resources of a scene.
 pub struct SceneResources {
@@ -34,9 +32,7 @@ pub struct SceneResources {
     /// Lists of large triangles, one per instance.
     large_triangles: Option<Buffer>,
     /// Order of its surfels, chunk by chunk, if they are in arbitrary order.
-    order: Option<Buffer>,
-    /// Of the curve along which its surfels are sorted: least corner, and cells per unit of length.
-    curve: [f32; 4],
+    order: Option<SurfelOrder>,
     /// Views of the instances, if scenes are instanced.
     pub views: Option<Buffer>,
     chunks: Vec<Range<u64>>,
@@ -143,8 +139,7 @@ impl SceneResources {
             moved: splats(needs.moved)?,
             counts: None,
             large_triangles: triangles.map(list).transpose()?,
-            order: variant.unordered.then(|| order_of(device, scene)).transpose()?,
-            curve: [0.0; 4],
+            order: variant.unordered.then(|| SurfelOrder::new(device, scene)).transpose()?,
             views: needs.instanced.then(views).transpose()?,
             chunks: scene.chunks().to_vec(),
             clips: clips.iter().map(|clips| clips.count as u32).collect(),
@@ -171,16 +166,14 @@ impl SceneResources {
     /// Sets the surfel and instance counts of the next frames, and the curve along which the scene's surfels are sorted.
     pub fn set_frame(&mut self, scene: &Scene, instances: u64) {
         (self.count, self.instances) = (scene.count(), instances);
-        let [low, high] = scene.curve_box();
-        // Cubic cells, as a surface needs no digits for what is thin.
-        let side = (high - low).max_element();
-        let cells = if side > 0.0 { CELLS / side } else { 0.0 };
-        self.curve = low.extend(cells).to_array();
+        if let Some(order) = &mut self.order {
+            order.set_curve(scene);
+        }
     }
 
-    /// Of the curve along which the surfels are sorted: least corner, and cells per unit of length.
-    pub fn curve(&self) -> [f32; 4] {
-        self.curve
+    /// Order of its surfels, if they are in arbitrary order.
+    pub fn order(&self) -> Option<&SurfelOrder> {
+        self.order.as_ref()
     }
 
     /// Creates the counters, if missing.
@@ -219,10 +212,7 @@ impl SceneResources {
         let surfels = |buffers: Option<&SplatBuffers>, batch: u64, index: usize| {
             let mut bindings = scene.bindings(index);
             bindings.extend(uniform_bindings(batch));
-            bindings.extend(self.order.as_ref().map(|order| {
-                let [start, bytes] = order_range(&self.chunks, index);
-                (&resource::ORDER, Binding::Storage(order, start, bytes))
-            }));
+            bindings.extend(self.order.as_ref().map(|order| (&resource::ORDER, order.binding(index))));
             bindings.extend(buffers.into_iter().flat_map(|splats| splats.bindings(scene, batch, index)));
             let range = self.range.as_ref().filter(|_| buffers.is_none());
             bindings.extend(range.into_iter().flat_map(|range| range.bindings(scene, batches, batch, index)));
@@ -267,7 +257,7 @@ impl SceneResources {
         });
         let other = match resource {
             Resource::Counts => self.counts.as_ref(),
-            Resource::Order => self.order.as_ref(),
+            Resource::Order => self.order.as_ref().map(SurfelOrder::buffer),
             Resource::LargeTriangles => self.large_triangles.as_ref(),
             _ => None,
         };
@@ -322,7 +312,8 @@ impl SceneResources {
     /// Memory of splats, counters and order, bytes.
     pub fn bytes(&self) -> u64 {
         let splats = [&self.splats, &self.moved].into_iter().flatten().map(SplatBuffers::bytes);
-        let others = [&self.counts, &self.order].into_iter().flatten().map(Buffer::size);
+        let order = self.order.as_ref().map(SurfelOrder::buffer);
+        let others = [self.counts.as_ref(), order].into_iter().flatten().map(Buffer::size);
         splats.chain(others).sum()
     }
 
@@ -337,7 +328,7 @@ impl SceneResources {
         let target = Buffer::readback(device, "read splats", splats.size())?;
         Commands::new(device, false)?.run(|rec| copy_to_host(rec, splats, &target))?;
         let order = self.order.as_ref().filter(|_| self.range.is_some());
-        let order = order.map(|order| read_words(device, order)).transpose()?;
+        let order = order.map(|order| order.read(device).map(|words| (order, words))).transpose()?;
         let of_instance = |instance: u64| {
             let start = match (&self.splats, &self.range) {
                 (Some(buffers), _) => buffers.splats_start(instance, capacity),
@@ -347,50 +338,17 @@ impl SceneResources {
             let in_slots: Vec<Splat> =
                 bytemuck::pod_collect_to_vec(&target.bytes()[start..start + size as usize]);
             match &order {
-                Some(order) => self.by_surfel(&in_slots, order),
+                Some((order, words)) => order.by_surfel(&in_slots, words),
                 None => in_slots,
             }
         };
         Ok((0..self.instances).map(of_instance).collect())
     }
 
-    /// Splats of an instance surfel by surfel, from those in the slots of its list.
-    fn by_surfel(&self, in_slots: &[Splat], order: &[u32]) -> Vec<Splat> {
-        let mut list = in_slots.to_vec();
-        for (index, chunk) in self.chunks.iter().enumerate() {
-            let first = order_range(&self.chunks, index)[0] as usize / 4;
-            for slot in chunk.start..chunk.end.min(self.count) {
-                let surfel = chunk.start + u64::from(order[first + (slot - chunk.start) as usize]);
-                list[surfel as usize] = in_slots[slot as usize];
-            }
-        }
-        list
-    }
-
     /// Bytes of the counters; 0 if nothing is counted.
     pub fn counts_size(&self) -> u64 {
         self.counts.as_ref().map_or(0, Buffer::size)
     }
-}
-
-fn read_words(device: &Arc<Device>, buffer: &Buffer) -> Result<Vec<u32>> {
-    let target = Buffer::readback(device, "read order", buffer.size())?;
-    Commands::new(device, false)?.run(|rec| copy_to_host(rec, buffer, &target))?;
-    Ok(bytemuck::pod_collect_to_vec(target.bytes()))
-}
-
-/// Creates the buffer of the order of a scene's surfels.
-fn order_of(device: &Arc<Device>, scene: &Scene) -> Result<Buffer> {
-    let chunks = scene.chunks();
-    let end = chunks.len().checked_sub(1).map_or(0, |last| order_range(chunks, last).iter().sum());
-    Buffer::storage(device, "order", end.max(ALIGNMENT))
-}
-
-/// Start and size of a chunk's order, bytes.
-fn order_range(chunks: &[Range<u64>], index: usize) -> [u64; 2] {
-    let bytes = |chunk: &Range<u64>| order::bytes(chunk.end - chunk.start);
-    let start = chunks[..index].iter().map(|chunk| bytes(chunk).next_multiple_of(ALIGNMENT)).sum();
-    [start, bytes(&chunks[index])]
 }
 
 /// Batches of so many instances of a scene.
@@ -412,7 +370,7 @@ fn bound_set(
     DescriptorSet::new(device, &bindings)
 }
 
-fn copy_to_host(rec: &mut Recorder<'_>, from: &Buffer, to: &Buffer) {
+pub(super) fn copy_to_host(rec: &mut Recorder<'_>, from: &Buffer, to: &Buffer) {
     use crate::vk::Access;
     let uses = [from.with(Access::COPY_READ), to.with(Access::COPY_WRITE)];
     rec.pass("read splats", &uses).copy(from, to, 0, to.size());

@@ -48,17 +48,19 @@ pub fn bytes(surfels: u64) -> u64 {
     SURFEL * surfels + 4 * DIGIT_VALUES * runs(surfels)
 }
 
-/// The sort of a chunk of a scene: its pipelines, and the chunk.
+/// The sort of a chunk of a scene: pipelines by [`COUNT`], [`SCAN`] and [`SCATTER`], the chunk, and the curve.
 type Sort<'a> = ([&'a ComputePipeline; 3], ChunkRun<'a>, [f32; 4]);
 
 fn record(steps: &StepContext<'_>, rec: &mut Recorder<'_>) {
     let mut sorts: Vec<Sort<'_>> = Vec::new();
     for (pipelines, run) in steps.of_scenes() {
         // The order is that of all instances.
-        let (&[count, scan, scatter], 0) = (&pipelines[..], run.first) else { continue };
+        let (&[count, scan, scatter], Some(order), 0) = (&pipelines[..], run.scene.order(), run.first) else {
+            continue;
+        };
         let chunks = run.chunks(Domain::Surfels.scope(), &ORDER).into_iter();
         let sorted = chunks.filter(|chunk| chunk.chunk.count > 0);
-        sorts.extend(sorted.map(|chunk| ([count, scan, scatter], chunk, run.scene.curve())));
+        sorts.extend(sorted.map(|chunk| ([count, scan, scatter], chunk, order.curve())));
     }
     if sorts.is_empty() {
         return;
