@@ -8,6 +8,7 @@
 
 #define BOX_ACCESS
 #include "lib/box.glsl"
+#include "lib/cluster.glsl"
 #ifdef SUBGROUPS
 layout(set = 1, binding = 6, std430) writeonly buffer Boxes { Box boxes[]; };
 #endif
@@ -19,11 +20,20 @@ layout(push_constant) uniform Level {
     uint start;       // first box of this level in the bound range
     uint count;       // boxes of this level, padded to a multiple of FAN_OUT
     uint finer_count; // boxes of the finer level
+    uint number;      // of this level, from 0 for splats
+    uint clusters;    // first box of the level of clusters
 } level;
+
+// Whether the node is that of a culled cluster or below one.
+bool is_culled(uint i) {
+    if (!CLUSTERS || level.number > CLUSTER_LEVEL) return false;
+    uint cluster = i >> (level.number == CLUSTER_LEVEL ? 0 : 3);
+    return load_box(level.clusters + cluster).w == CULLED_CLUSTER;
+}
 
 void main() {
     uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    if (i >= level.count) return;
+    if (i >= level.count || is_culled(i)) return;
     uvec4 bounds = uvec4(0xffff, 0xffff, 0, 0);
     uint nearest = 0;
     for (uint k = 0; k < FAN_OUT; k++) {

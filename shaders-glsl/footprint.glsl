@@ -3,6 +3,11 @@
 #pragma variant TILES COMPUTE
 #extension GL_GOOGLE_include_directive : require
 
+#ifdef TILES
+#define VISIBLE_ACCESS readonly
+#define PER_CLUSTER
+#include "lib/visible_clusters.glsl"
+#endif
 #include "lib/instance.glsl"
 #define WRITES_SPLATS
 #define CLIP_ACCESS writeonly
@@ -248,6 +253,11 @@ uint surfel_of(uint slot) {
     return UNORDERED ? order[slot] : slot;
 }
 
+// Index of the invocation's splat in the instance's list.
+uint slot_of_invocation() {
+    return surfel_of_invocation();
+}
+
 // Stores the result of surfel i in a slot.
 void store(uint slot, uint i, uint reason, Splat splat) {
     uint index = splat_index(slot);
@@ -275,6 +285,10 @@ uint surfel_of(uint slot) {
     return slot;
 }
 
+uint slot_of_invocation() {
+    return gl_GlobalInvocationID.x;
+}
+
 void store(uint slot, uint i, uint reason, Splat splat) {
     store_splat(splat_index(slot), splat);
 }
@@ -286,7 +300,7 @@ bool has_surfel(uint slot) {
 #endif
 
 void main() {
-    uint slot = gl_GlobalInvocationID.x;
+    uint slot = slot_of_invocation();
     if (!has_surfel(slot)) return;
     uint i = surfel_of(slot);
     Splat splat = Splat(vec2(0.0), vec2(1.0, 0.0), 1.0, 0.0, 0, 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);

@@ -16,6 +16,11 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #endif
 
+#if !defined(LINES) && !defined(TRIANGLES) && !defined(RASTER_POINTS) && !defined(COUNT_ONLY)
+#define VISIBLE_ACCESS readonly
+#define PER_CLUSTER
+#include "lib/visible_clusters.glsl"
+#endif
 #ifdef RASTER_POINTS
 #include "lib/frame.glsl"
 #else
@@ -124,7 +129,11 @@ void main() {
 #include "lib/point.glsl"
 
 void main() {
+#ifdef PER_CLUSTER
+    uint i = surfel_of_invocation();
+#else
     uint i = gl_GlobalInvocationID.x;
+#endif
     if (i >= chunk.count) return;
     Point point;
     uint reason = point_of(i, point);

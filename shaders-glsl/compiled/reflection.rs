@@ -65,7 +65,7 @@ pub static BOXES_COMPUTE: Module = Module {
     name: "boxes_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("boxes_compute.spv"),
-    constants: &[],
+    constants: &[63],
     resources: &[(&resource::BOXES, true)],
     push: size_of::<layout::Level>() as u32,
 };
@@ -75,7 +75,7 @@ pub static BOXES_SUBGROUPS_COMPUTE: Module = Module {
     name: "boxes_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("boxes_subgroups_compute.spv"),
-    constants: &[],
+    constants: &[63],
     resources: &[(&resource::BOXES, true), (&resource::BOX_TEXELS, false)],
     push: size_of::<layout::Level>() as u32,
 };
@@ -160,6 +160,26 @@ pub static COPY_COMPUTE: Module = Module {
     push: size_of::<layout::Step>() as u32,
 };
 
+/// The compute stage of `shaders-glsl/cull.glsl`.
+pub static CULL_COMPUTE: Module = Module {
+    name: "cull_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("cull_compute.spv"),
+    constants: &[0, 1, 2, 15, 37, 64],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBLE_CLUSTERS, true), (&resource::CLUSTERS, false), (&resource::COUNTS, true)],
+    push: size_of::<layout::Chunk>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/cull.glsl`.
+pub static CULL_TILES_COMPUTE: Module = Module {
+    name: "cull_tiles_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("cull_tiles_compute.spv"),
+    constants: &[0, 1, 2, 15, 37, 64],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBLE_CLUSTERS, true), (&resource::CLUSTERS, false), (&resource::BOXES, true), (&resource::COUNTS, true)],
+    push: size_of::<layout::Chunk>() as u32,
+};
+
 /// The compute stage of `shaders-glsl/fetch.glsl`.
 pub static FETCH_COMPUTE: Module = Module {
     name: "fetch_compute",
@@ -225,8 +245,8 @@ pub static FOOTPRINT_TILES_COMPUTE: Module = Module {
     name: "footprint_tiles_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("footprint_tiles_compute.spv"),
-    constants: &[0, 1, 2, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 21, 23, 26, 27, 37, 45, 46, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
-    resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::SPLAT_ATTRIBUTES, true), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::WEIGHTS, false), (&resource::SPLAT_BOXES, true), (&resource::ORDER, false), (&resource::COUNTS, true)],
+    constants: &[0, 1, 2, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 21, 23, 26, 27, 37, 45, 46, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63],
+    resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::SPLAT_ATTRIBUTES, true), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::WEIGHTS, false), (&resource::SPLAT_BOXES, true), (&resource::ORDER, false), (&resource::VISIBLE_CLUSTERS, false), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -465,8 +485,8 @@ pub static PROJECT_COMPUTE: Module = Module {
     name: "project_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("project_compute.spv"),
-    constants: &[0, 1, 2, 12, 13, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
-    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST, true), (&resource::COUNTS, true)],
+    constants: &[0, 1, 2, 12, 13, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63],
+    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::VISIBLE_CLUSTERS, false), (&resource::NEAREST, true), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -714,8 +734,12 @@ pub static VISIBILITY_SUBGROUPS_COMPUTE: Module = Module {
 pub mod constant {
     /// `BEYOND_CLIPS`, first in `shaders-glsl/attribute.glsl`.
     pub const BEYOND_CLIPS: u32 = 24;
+    /// `BOUNDED`, first in `shaders-glsl/cull.glsl`.
+    pub const BOUNDED: u32 = 64;
     /// `CLIPS`, first in `shaders-glsl/attribute.glsl`.
     pub const CLIPS: u32 = 23;
+    /// `CLUSTERS`, first in `shaders-glsl/boxes.glsl`.
+    pub const CLUSTERS: u32 = 63;
     /// `COLOURS`, first in `shaders-glsl/attribute.glsl`.
     pub const COLOURS: u32 = 5;
     /// `COLOUR_OFFSET`, first in `shaders-glsl/attribute.glsl`.
@@ -728,11 +752,11 @@ pub mod constant {
     pub const CONFETTI: u32 = 16;
     /// `CORNERS`, first in `shaders-glsl/attribute.glsl`.
     pub const CORNERS: u32 = 27;
-    /// `COUNT`, first in `shaders-glsl/fetch.glsl`.
+    /// `COUNT`, first in `shaders-glsl/cull.glsl`.
     pub const COUNT: u32 = 2;
     /// `COVERAGE`, first in `shaders-glsl/nearest.glsl`.
     pub const COVERAGE: u32 = 31;
-    /// `CULL_BACK`, first in `shaders-glsl/fetch.glsl`.
+    /// `CULL_BACK`, first in `shaders-glsl/cull.glsl`.
     pub const CULL_BACK: u32 = 1;
     /// `ELLIPSES`, first in `shaders-glsl/attribute.glsl`.
     pub const ELLIPSES: u32 = 12;
@@ -854,6 +878,15 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
     };
 
+    /// `Clusters`, first in `shaders-glsl/cull.glsl`.
+    pub static CLUSTERS: Resource = Resource {
+        name: "Clusters",
+        set: 0,
+        binding: 22,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
     /// `Colours`, first in `shaders-glsl/attribute.glsl`.
     pub static COLOURS: Resource = Resource {
         name: "Colours",
@@ -863,7 +896,7 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
     };
 
-    /// `Counts`, first in `shaders-glsl/footprint.glsl`.
+    /// `Counts`, first in `shaders-glsl/cull.glsl`.
     pub static COUNTS: Resource = Resource {
         name: "Counts",
         set: 2,
@@ -1147,6 +1180,15 @@ pub mod resource {
         name: "Visibility",
         set: 1,
         binding: 0,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `VisibleClusters`, first in `shaders-glsl/cull.glsl`.
+    pub static VISIBLE_CLUSTERS: Resource = Resource {
+        name: "VisibleClusters",
+        set: 0,
+        binding: 21,
         kind: DescriptorType::STORAGE_BUFFER,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
@@ -1497,7 +1539,7 @@ pub mod resource {
 /// The blocks and structs of the shaders, byte for byte.
 #[allow(non_snake_case, non_camel_case_types)]
 pub mod layout {
-    /// `Chunk`, 36 bytes, first in `shaders-glsl/attribute.glsl`.
+    /// `Chunk`, 40 bytes, first in `shaders-glsl/attribute.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Chunk {
@@ -1519,6 +1561,8 @@ pub mod layout {
         pub attribute_rows: u32,
         /// Byte 32.
         pub instance_count: u32,
+        /// Byte 36.
+        pub first_node: u32,
     }
     const _: () = assert!(std::mem::offset_of!(Chunk, count) == 0);
     const _: () = assert!(std::mem::offset_of!(Chunk, first_id) == 4);
@@ -1529,7 +1573,24 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Chunk, first_clip) == 24);
     const _: () = assert!(std::mem::offset_of!(Chunk, attribute_rows) == 28);
     const _: () = assert!(std::mem::offset_of!(Chunk, instance_count) == 32);
-    const _: () = assert!(std::mem::size_of::<Chunk>() == 36);
+    const _: () = assert!(std::mem::offset_of!(Chunk, first_node) == 36);
+    const _: () = assert!(std::mem::size_of::<Chunk>() == 40);
+
+    /// `Cluster`, 48 bytes, first in `shaders-glsl/cull.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct Cluster {
+        /// Byte 0.
+        pub low: [f32; 4],
+        /// Byte 16.
+        pub high: [f32; 4],
+        /// Byte 32.
+        pub axis: [f32; 4],
+    }
+    const _: () = assert!(std::mem::offset_of!(Cluster, low) == 0);
+    const _: () = assert!(std::mem::offset_of!(Cluster, high) == 16);
+    const _: () = assert!(std::mem::offset_of!(Cluster, axis) == 32);
+    const _: () = assert!(std::mem::size_of::<Cluster>() == 48);
 
     /// `Composite`, 24 bytes, first in `shaders-glsl/composite.glsl`.
     #[repr(C)]
@@ -1544,15 +1605,18 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Composite, origin) == 16);
     const _: () = assert!(std::mem::size_of::<Composite>() == 24);
 
-    /// `Counts`, 20 bytes, first in `shaders-glsl/fetch.glsl`.
+    /// `Counts`, 24 bytes, first in `shaders-glsl/cull.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Counts {
         /// Byte 0.
         pub culled: [u32; 5],
+        /// Byte 20.
+        pub in_clusters: u32,
     }
     const _: () = assert!(std::mem::offset_of!(Counts, culled) == 0);
-    const _: () = assert!(std::mem::size_of::<Counts>() == 20);
+    const _: () = assert!(std::mem::offset_of!(Counts, in_clusters) == 20);
+    const _: () = assert!(std::mem::size_of::<Counts>() == 24);
 
     /// `Frame`, 176 bytes, first in `shaders-glsl/attribute.glsl`.
     #[repr(C)]
@@ -1660,7 +1724,7 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(IncompleteFrame, incomplete_frame) == 0);
     const _: () = assert!(std::mem::size_of::<IncompleteFrame>() == 4);
 
-    /// `Level`, 16 bytes, first in `shaders-glsl/boxes.glsl`.
+    /// `Level`, 24 bytes, first in `shaders-glsl/boxes.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Level {
@@ -1672,12 +1736,18 @@ pub mod layout {
         pub count: u32,
         /// Byte 12.
         pub finer_count: u32,
+        /// Byte 16.
+        pub number: u32,
+        /// Byte 20.
+        pub clusters: u32,
     }
     const _: () = assert!(std::mem::offset_of!(Level, finer_start) == 0);
     const _: () = assert!(std::mem::offset_of!(Level, start) == 4);
     const _: () = assert!(std::mem::offset_of!(Level, count) == 8);
     const _: () = assert!(std::mem::offset_of!(Level, finer_count) == 12);
-    const _: () = assert!(std::mem::size_of::<Level>() == 16);
+    const _: () = assert!(std::mem::offset_of!(Level, number) == 16);
+    const _: () = assert!(std::mem::offset_of!(Level, clusters) == 20);
+    const _: () = assert!(std::mem::size_of::<Level>() == 24);
 
     /// `Materials`, 4 bytes, first in `shaders-glsl/shade.glsl`.
     #[repr(C)]
@@ -1923,5 +1993,24 @@ pub mod layout {
     }
     const _: () = assert!(std::mem::offset_of!(Views, views) == 0);
     const _: () = assert!(std::mem::size_of::<Views>() == 15984);
+
+    /// `VisibleClusters`, 16 bytes, first in `shaders-glsl/cull.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct VisibleClusters {
+        /// Byte 0.
+        pub columns: u32,
+        /// Byte 4.
+        pub rows: u32,
+        /// Byte 8.
+        pub layers: u32,
+        /// Byte 12.
+        pub visible_count: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(VisibleClusters, columns) == 0);
+    const _: () = assert!(std::mem::offset_of!(VisibleClusters, rows) == 4);
+    const _: () = assert!(std::mem::offset_of!(VisibleClusters, layers) == 8);
+    const _: () = assert!(std::mem::offset_of!(VisibleClusters, visible_count) == 12);
+    const _: () = assert!(std::mem::size_of::<VisibleClusters>() == 16);
 
 }

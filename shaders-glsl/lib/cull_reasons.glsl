@@ -11,10 +11,19 @@ const uint DRAWN = 5;
 
 layout(constant_id = 2) const bool COUNT = false;
 
-layout(set = 2, binding = 5, std430) buffer Counts { uint culled[5]; };
+layout(set = 2, binding = 5, std430) buffer Counts {
+    uint culled[5];
+    uint in_clusters; // of the culled ones, those of culled clusters
+};
 
 void count(uint reason) {
     if (COUNT && reason != DRAWN) atomicAdd(culled[reason], 1);
+}
+
+void count_cluster(uint reason, uint surfels) {
+    if (!COUNT) return;
+    atomicAdd(culled[reason], surfels);
+    atomicAdd(in_clusters, surfels);
 }
 
 #endif

@@ -19,6 +19,7 @@ layout(push_constant) uniform Chunk {
     uint first_clip;      // index in the frame of the first screen clip in the descriptor set
     uint attribute_rows;  // attribute rows per splat in the frame's list
     uint instance_count;  // instances in this frame, of those in the descriptor set
+    uint first_node;      // node of the first cluster of surfels in the bound levels of the frame's box hierarchy
 } chunk;
 
 #ifdef VERTEX
@@ -29,12 +30,17 @@ uint surfel_index() {
 }
 #endif
 
+// Instance of an invocation, unless the including file defines another.
+#ifndef INSTANCE
+#define INSTANCE (chunk.first_instance + gl_WorkGroupID.z)
+#endif
+
 // Index of the instance in the descriptor set.
 uint instance_index() {
 #ifdef VERTEX
     return INSTANCED ? chunk.first_instance + gl_VertexIndex / VERTICES / chunk.count : 0;
 #else
-    return INSTANCED ? chunk.first_instance + gl_WorkGroupID.z : 0;
+    return INSTANCED ? INSTANCE : 0;
 #endif
 }
 

@@ -2,31 +2,10 @@
 
 #include "lib/double_float.glsl"
 #include "lib/clip.glsl"
+#include "lib/footprint_kind.glsl"
 
 layout(constant_id = 14) const bool WIDEN_SMALL = false; // the low-pass filter widens only axes shorter than itself
-layout(constant_id = 15) const uint FOOTPRINT = 0;        // as in src/settings/splatting.rs
-layout(constant_id = 16) const bool CONFETTI = false;     // the kernel is ψ_E
-
-const uint CONIC = 0, AFFINE = 1, PARALLELOGRAM = 2, DISC = 3, SPRITE = 4, WHOLE_SPRITE = 5, SQUARE = 6;
-
-// Whether the kernel lies in the tangent plane.
-bool on_plane() {
-    return PERSPECTIVE && (FOOTPRINT == PARALLELOGRAM || FOOTPRINT == DISC);
-}
-
-bool is_sprite() {
-    return FOOTPRINT == SPRITE || FOOTPRINT == WHOLE_SPRITE;
-}
-
-// Whether distance, not inverse distance, is affine on the screen.
-bool has_linear_depth() {
-    return PERSPECTIVE && is_sprite();
-}
-
-// Half the diagonal of a footprint with semi-axes 1: it is bounded by a square around them, or by an ellipse.
-float rim() {
-    return FOOTPRINT == PARALLELOGRAM || FOOTPRINT == SQUARE ? 1.4142137 : 1.0;
-}
+layout(constant_id = 16) const bool CONFETTI = false; // the kernel is ψ_E
 
 struct Splat {
     vec2 offset;         // centre of the variance's ellipse relative to the anchor, px
@@ -112,15 +91,6 @@ bool is_drawn(Splat splat) {
 // V's eigenvalues, px²: their product is its determinant.
 vec2 variance_of(Splat splat) {
     return vec2(splat.variance, splat.sqrt_det * (splat.sqrt_det / splat.variance));
-}
-
-// Largest factor by which perspective scales a kernel in the tangent plane, relative to its centre: beyond it the plane nears its horizon,
-// and a parallelogram would reach behind the eye.
-const float MOST_STRETCH = 2.0;
-
-// Upper bound of stretch_of.
-float largest_stretch() {
-    return on_plane() ? MOST_STRETCH * rim() : rim();
 }
 
 // Half width and height, px, of the cut-off ellipse of a variance with this major axis and these eigenvalues.

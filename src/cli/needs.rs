@@ -65,8 +65,10 @@ fn cases() -> Vec<Case> {
         coloured(perspective_ewa::METHOD).asking("lit, normals, depths", |_, outputs| {
             *outputs = Outputs { normal: true, depth: true, id: false };
         }),
-        coloured(perspective_ewa::METHOD)
-            .of("coloured circles in arbitrary order", |streams| streams.unordered = true),
+        coloured(perspective_ewa::METHOD).of("coloured circles in arbitrary order", |streams| {
+            streams.unordered = true;
+            streams.clusters = false;
+        }),
         coloured(object_ewa::METHOD),
         coloured(object_ewa::METHOD)
             .of("coloured circles with weights", |streams| streams.weights = Some(false))

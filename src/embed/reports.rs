@@ -169,12 +169,15 @@ impl Slot {
             return Ok(None);
         }
         let counted = self.counts.as_ref().zip(counts);
-        let counts = counted.map(|(buffer, (surfels, size))| {
-            let bytes = &buffer.bytes()[..size as usize];
-            SplatCounts::new(surfels, counts_in(bytes))
-        });
+        let counts =
+            counted.map(|(buffer, (surfels, size))| (surfels, counts_in(&buffer.bytes()[..size as usize])));
         let timed = self.timestamps.as_ref().filter(|_| times);
         let pass_times = timed.map_or(Ok(Vec::new()), Timestamps::read)?;
-        Ok(Some(FrameReport { pass_times, counts, incomplete: false }))
+        Ok(Some(FrameReport {
+            pass_times,
+            counts: counts.map(|(surfels, counts)| SplatCounts::new(surfels, counts)),
+            culled_in_clusters: counts.map_or(0, |(_, counts)| counts.in_clusters),
+            incomplete: false,
+        }))
     }
 }

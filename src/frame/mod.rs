@@ -53,6 +53,7 @@ pub mod times;
 pub(crate) mod uniforms;
 pub(crate) mod variant;
 pub(crate) mod variant_resources;
+mod visible_clusters;
 
 pub use plan::FramePlan;
 pub use pyramid_samples::{PyramidLevel, PyramidSample};

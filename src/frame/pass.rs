@@ -105,6 +105,10 @@ pub enum Domain {
     Surfels,
     /// One invocation per surfel of the capacity, in all instances.
     SurfelSlots,
+    /// One invocation per cluster of surfels of the capacity, in all instances.
+    Clusters,
+    /// One workgroup per cluster in the list of visible ones.
+    VisibleClusters,
     /// One invocation per pixel, for each chunk of a scene's surfels.
     PixelsOfSurfels,
     /// One invocation per segment.
@@ -138,6 +142,8 @@ pub enum Scope {
     View,
     /// A scene's surfels.
     Surfels,
+    /// A scene's clusters of surfels.
+    Clusters,
     /// A scene's segments.
     Lines,
     /// A scene's triangles.
@@ -150,9 +156,11 @@ impl Domain {
         match self {
             Self::Surfels
             | Self::SurfelSlots
+            | Self::VisibleClusters
             | Self::PixelsOfSurfels
             | Self::SplatTriangles
             | Self::Points => Scope::Surfels,
+            Self::Clusters => Scope::Clusters,
             Self::Lines | Self::PixelsOfLines => Scope::Lines,
             Self::Triangles | Self::LargeTriangles | Self::PixelsOfTriangles => Scope::Triangles,
             Self::Pixels | Self::Tiles | Self::Level | Self::FullScreen => Scope::View,

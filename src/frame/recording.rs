@@ -6,6 +6,7 @@ use super::scene_resources::{InstanceRun, SceneResources};
 use super::splat_list::SplatList;
 use super::targets::RenderTargets;
 use super::variant::{SceneVariant, Variant};
+use crate::scene::CLUSTER;
 use crate::vk::shaders::Module;
 use crate::vk::{
     Access, Buffer, ComputePipeline, DescriptorSet, DrawPipeline, Draws, Encoder, Framebuffer, Recorder, Use,
@@ -167,7 +168,13 @@ impl PreparedPass {
                 continue;
             };
             for mut chunk_run in run.chunks(domain.scope(), self.pass) {
-                if domain == Domain::SurfelSlots {
+                let sets = sets_with(chunk_run.set, pyramid.or(chunk_run.counts));
+                if domain == Domain::VisibleClusters {
+                    let Some(workgroups) = chunk_run.visible else { continue };
+                    enc.dispatch_indirect(pipeline, &sets, &chunk_run.chunk, workgroups);
+                    continue;
+                }
+                if [Domain::SurfelSlots, Domain::Clusters].contains(&domain) {
                     chunk_run.instances = chunk_run.capacity;
                 }
                 let [x, y, _] = match domain {
@@ -175,10 +182,12 @@ impl PreparedPass {
                         row_over(chunk_run.chunk.count.into())
                     }
                     Domain::SurfelSlots => row_over(chunk_run.chunk.instance_stride.into()),
+                    Domain::Clusters => {
+                        row_over(u64::from(chunk_run.chunk.instance_stride).div_ceil(CLUSTER))
+                    }
                     Domain::LargeTriangles => [LARGE_WORKGROUPS.div_ceil(chunk_run.instances), 1, 1],
                     _ => grid_over_pixels(frame.targets.size),
                 };
-                let sets = sets_with(chunk_run.set, pyramid.or(chunk_run.counts));
                 enc.dispatch(pipeline, &sets, &chunk_run.chunk, [x, y, chunk_run.instances]);
             }
         }
@@ -317,8 +326,12 @@ impl Pass {
         let all = read.chain(self.writes.iter().map(|resource| (*resource, true)));
         let touched = all.map(|(resource, write)| (resource, seen_by(resource), write));
         let touched = touched.filter(|(_, stages, _)| !stages.is_empty());
-        let mut list: Vec<_> =
-            touched.map(|(resource, stages, write)| (resource, Access::of_shader(stages, write))).collect();
+        let access = |(resource, stages, write)| {
+            let access = Access::of_shader(stages, write);
+            let indirect = resource == Resource::VisibleClusters && !write;
+            (resource, if indirect { access.and_indirect() } else { access })
+        };
+        let mut list: Vec<_> = touched.map(access).collect();
         match &self.commands {
             Commands::Draws(targets) if to_own => list.extend(targets.accesses()),
             _ => {}

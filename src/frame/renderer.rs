@@ -2,7 +2,7 @@
 
 use super::pyramid_samples::PyramidLevel;
 use super::resources::{Disposal, FrameResources};
-use super::scene_resources::SceneResources;
+use super::scene_resources::{SceneResources, sum};
 use super::targets::TargetInfo;
 use crate::error::Result;
 use crate::geometry::Camera;
@@ -14,6 +14,7 @@ use crate::settings::{Outputs, Precision, Rasterizer};
 use crate::vk::shaders::layout::Counts;
 pub use crate::vk::shaders::layout::Splat;
 use crate::vk::{Commands, Device, PassTime};
+use bytemuck::Zeroable;
 use std::sync::Arc;
 
 /// Options that apply to all frames.
@@ -49,11 +50,14 @@ pub struct FrameReport {
     pub pass_times: Vec<PassTime>,
     /// Surfels by cull reason, if they were counted.
     pub counts: Option<SplatCounts>,
+    /// Culled surfels that were not even read, if they were counted: the compute path culls clusters of 64 consecutive surfels by their bounds.
+    pub culled_in_clusters: u32,
     /// Whether a tile lacks splats, see [`RenderOptions::most_splats`]; in a host, also where a later frame did that is over.
     pub incomplete: bool,
 }
 
-/// Surfels by cull reason in a frame.
+/// Surfels by cull reason in a frame. Each counts once: one that is culled with its cluster ([`FrameReport::culled_in_clusters`]) for a reason
+/// that all of the cluster have.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SplatCounts {
     /// Not culled.
@@ -184,9 +188,12 @@ impl Renderer {
     /// Report of the completed frame.
     fn report(&mut self) -> Result<FrameReport> {
         let counted = self.frame.current().is_some_and(|current| current.variant.count);
+        let counts = self.frame.scenes().map(SceneResources::counts).fold(Counts::zeroed(), sum);
+        let surfels = self.frame.scenes().map(SceneResources::count).sum();
         Ok(FrameReport {
             pass_times: self.commands.pass_times()?,
-            counts: counted.then(|| SplatCounts::of(self.frame.scenes())),
+            counts: counted.then(|| SplatCounts::new(surfels, counts)),
+            culled_in_clusters: if counted { counts.in_clusters } else { 0 },
             incomplete: self.frame.learn(),
         })
     }
@@ -194,17 +201,9 @@ impl Renderer {
 
 impl SplatCounts {
     /// Counts of so many surfels, of which these are culled.
-    pub(crate) fn new(surfels: u64, Counts { culled }: Counts) -> Self {
+    pub(crate) fn new(surfels: u64, Counts { culled, .. }: Counts) -> Self {
         let [behind, eye_plane, back, outside, invalid] = culled;
         let drawn = surfels.saturating_sub(culled.iter().copied().map(u64::from).sum()) as u32;
         Self { drawn, behind, eye_plane, back, outside, invalid }
-    }
-
-    /// Sum over scenes.
-    fn of<'a>(scenes: impl Iterator<Item = &'a SceneResources> + Clone) -> Self {
-        let add =
-            |sum: [u32; 5], counts: Counts| std::array::from_fn(|i| sum[i].saturating_add(counts.culled[i]));
-        let culled = scenes.clone().map(SceneResources::counts).fold([0; 5], add);
-        Self::new(scenes.map(SceneResources::count).sum(), Counts { culled })
     }
 }

@@ -7,6 +7,8 @@ pub enum Resource {
     Splats,
     /// Tile path, per scene in arbitrary order: indices of its surfels along a curve.
     Order,
+    /// Compute path, per scene: lists of the clusters of surfels that were not culled.
+    VisibleClusters,
     /// Tile path: bounding boxes of splats, and of the hierarchy's nodes above them.
     Boxes,
     /// Tile path: attributes that sums read of each splat.
@@ -55,6 +57,7 @@ impl Resource {
         match self {
             Self::Splats => "splats",
             Self::Order => "order",
+            Self::VisibleClusters => "visible clusters",
             Self::Boxes => "boxes",
             Self::Attributes => "attributes",
             Self::ScreenClips => "screen clips",
@@ -84,6 +87,7 @@ impl Resource {
             self,
             Self::Splats
                 | Self::Order
+                | Self::VisibleClusters
                 | Self::Boxes
                 | Self::Attributes
                 | Self::ScreenClips

@@ -5,6 +5,7 @@ use super::pipelines::{Host, Pipelines};
 use super::rasterizer::width_of_blended_sums;
 use super::recording::Frame;
 use super::renderer::RenderOptions;
+use super::resource::Resource;
 use super::scene_cache::SceneCache;
 use super::scene_resources::{InstanceRun, Needs, SceneResources, batches_of};
 use super::slicing::Slicing;
@@ -221,6 +222,8 @@ impl FrameResources {
     pub fn record(&self, rec: &mut Recorder<'_>, uniforms: &Uniforms) {
         self.update(rec, uniforms);
         let Some((current, frame)) = self.frame() else { return };
+        // Several passes count.
+        frame.clear(rec, &[Resource::Counts]);
         let mut awaited = Vec::new();
         for prepared in &current.passes {
             if self.pipelines.is_host_pass(prepared.pass) {
@@ -231,7 +234,7 @@ impl FrameResources {
             }
         }
         if current.variant.count {
-            let counts = self.scenes().flat_map(|scene| scene.buffers(super::resource::Resource::Counts));
+            let counts = self.scenes().flat_map(|scene| scene.buffers(Resource::Counts));
             awaited.extend(counts.map(|counts| counts.with(Access::HOST_READ)));
         }
         if current.variant.is_tiled() {
@@ -321,6 +324,7 @@ impl FrameResources {
             splats,
             moved: of_host && splats && variant.visibility == Visibility::Axis,
             instanced,
+            clusters: variant.clusters,
             instances: padded_instances(counts[scene]),
         };
         let Self { scenes, disposal, device, view, splats: splat_list, .. } = self;

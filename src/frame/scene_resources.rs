@@ -8,11 +8,13 @@ use super::splat_list::{ListRange, slots};
 use super::surfel_order::SurfelOrder;
 use super::uniforms::{self, VIEW};
 use super::variant::SceneVariant;
+use super::visible_clusters::VisibleClusters;
 use crate::error::Result;
-use crate::scene::{Elements, Scene};
+use crate::scene::{CLUSTER, Elements, Scene};
 use crate::vk::shaders::layout::{Chunk, Counts, Splat};
 use crate::vk::shaders::{self, resource};
 use crate::vk::{Binding, Buffer, Commands, DescriptorSet, Device, Encoder, Recorder};
+use bytemuck::Zeroable;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -33,6 +35,8 @@ pub struct SceneResources {
     large_triangles: Option<Buffer>,
     /// Order of its surfels, chunk by chunk, if they are in arbitrary order.
     order: Option<SurfelOrder>,
+    /// Lists of visible clusters, if the frame culls clusters.
+    clusters: Option<VisibleClusters>,
     /// Views of the instances, if scenes are instanced.
     pub views: Option<Buffer>,
     chunks: Vec<Range<u64>>,
@@ -57,6 +61,8 @@ pub struct Needs {
     pub moved: bool,
     /// Each instance has its own view.
     pub instanced: bool,
+    /// Its clusters of surfels are culled.
+    pub clusters: bool,
     /// Number of instances.
     pub instances: u64,
 }
@@ -68,6 +74,8 @@ struct Sets {
     surfels: Vec<DescriptorSet>,
     /// Sets of moved discs, likewise.
     moved: Vec<DescriptorSet>,
+    /// Of clusters, batch by batch, chunk by chunk.
+    clusters: Vec<DescriptorSet>,
     /// Of lines and of triangles, batch by batch.
     elements: [Vec<DescriptorSet>; 2],
 }
@@ -95,12 +103,14 @@ pub struct ChunkRun<'a> {
     pub instances: u32,
     /// Instance capacity of the batch.
     pub capacity: u32,
+    /// Workgroups over its visible clusters: buffer and offset, bytes.
+    pub visible: Option<(&'a Buffer, u64)>,
 }
 
 impl Needs {
     /// Whether resources created for these requirements satisfy `others`.
     pub fn satisfies(&self, others: &Self) -> bool {
-        let same = |needs: &Self| (needs.splats, needs.moved, needs.instanced);
+        let same = |needs: &Self| (needs.splats, needs.moved, needs.instanced, needs.clusters);
         let enough = others.instances..=4 * others.instances;
         same(self) == same(others) && enough.contains(&self.instances)
     }
@@ -140,6 +150,7 @@ impl SceneResources {
             counts: None,
             large_triangles: triangles.map(list).transpose()?,
             order: variant.unordered.then(|| SurfelOrder::new(device, scene)).transpose()?,
+            clusters: needs.clusters.then(|| VisibleClusters::new(device, scene, batches)).transpose()?,
             views: needs.instanced.then(views).transpose()?,
             chunks: scene.chunks().to_vec(),
             clips: clips.iter().map(|clips| clips.count as u32).collect(),
@@ -208,20 +219,31 @@ impl SceneResources {
             };
             [frame, self.views.as_ref().map_or(view, of_batch)]
         };
+        let visible = |batch: u64, index: usize| {
+            let clusters = self.clusters.as_ref()?;
+            Some((&resource::VISIBLE_CLUSTERS, clusters.binding(batch, index)))
+        };
         let of_surfels = variant.resources(Scope::Surfels);
         let surfels = |buffers: Option<&SplatBuffers>, batch: u64, index: usize| {
             let mut bindings = scene.bindings(index);
             bindings.extend(uniform_bindings(batch));
             bindings.extend(self.order.as_ref().map(|order| (&resource::ORDER, order.binding(index))));
+            bindings.extend(visible(batch, index));
             bindings.extend(buffers.into_iter().flat_map(|splats| splats.bindings(scene, batch, index)));
             let range = self.range.as_ref().filter(|_| buffers.is_none());
             bindings.extend(range.into_iter().flat_map(|range| range.bindings(scene, batches, batch, index)));
             bound_set(device, &of_surfels, bindings)
         };
+        let chunks =
+            || (0..batches.count()).flat_map(|batch| (0..self.chunks.len()).map(move |chunk| (batch, chunk)));
         let every = |buffers: Option<&SplatBuffers>| {
-            let chunks = (0..batches.count())
-                .flat_map(|batch| (0..self.chunks.len()).map(move |chunk| (batch, chunk)));
-            chunks.map(|(batch, chunk)| surfels(buffers, batch, chunk)).collect::<Result<Vec<_>>>()
+            chunks().map(|(batch, chunk)| surfels(buffers, batch, chunk)).collect::<Result<Vec<_>>>()
+        };
+        let of_clusters = variant.resources(Scope::Clusters);
+        let clusters = |(batch, index)| {
+            let bounds = scene.cluster_bindings();
+            let bindings = uniform_bindings(batch).into_iter().chain(bounds).chain(visible(batch, index));
+            bound_set(device, &of_clusters, bindings.collect())
         };
         let elements = |kind: usize| {
             let declared = variant.resources([Scope::Lines, Scope::Triangles][kind]);
@@ -243,6 +265,7 @@ impl SceneResources {
         Ok(Sets {
             surfels: every(self.splats.as_ref())?,
             moved: self.moved.as_ref().map_or(Ok(Vec::new()), |moved| every(Some(moved)))?,
+            clusters: chunks().filter(|_| self.clusters.is_some()).map(clusters).collect::<Result<_>>()?,
             elements: [elements(0)?, elements(1)?],
         })
     }
@@ -258,6 +281,7 @@ impl SceneResources {
         let other = match resource {
             Resource::Counts => self.counts.as_ref(),
             Resource::Order => self.order.as_ref().map(SurfelOrder::buffer),
+            Resource::VisibleClusters => self.clusters.as_ref().map(VisibleClusters::buffer),
             Resource::LargeTriangles => self.large_triangles.as_ref(),
             _ => None,
         };
@@ -272,6 +296,9 @@ impl SceneResources {
                 let Some(lists) = &self.large_triangles else { return };
                 let starts = batches.map(|batch| batch * self.triangle_stride());
                 starts.for_each(|start| enc.zero_range(lists, start, LIST_HEADER));
+            }
+            Resource::VisibleClusters => {
+                self.clusters.iter().for_each(|clusters| clusters.clear(enc, batches.clone()));
             }
             _ => self.buffers(resource).for_each(|buffer| enc.zero(buffer)),
         }
@@ -306,14 +333,15 @@ impl SceneResources {
 
     /// Culled surfels of the last counted frame, by reason. The frame must have completed.
     pub fn counts(&self) -> Counts {
-        self.counts.as_ref().map_or(Counts { culled: [0; 5] }, |counts| counts_in(counts.bytes()))
+        self.counts.as_ref().map_or(Counts::zeroed(), |counts| counts_in(counts.bytes()))
     }
 
-    /// Memory of splats, counters and order, bytes.
+    /// Memory of splats, counters, order and lists of clusters, bytes.
     pub fn bytes(&self) -> u64 {
         let splats = [&self.splats, &self.moved].into_iter().flatten().map(SplatBuffers::bytes);
         let order = self.order.as_ref().map(SurfelOrder::buffer);
-        let others = [self.counts.as_ref(), order].into_iter().flatten().map(Buffer::size);
+        let clusters = self.clusters.as_ref().map(VisibleClusters::buffer);
+        let others = [self.counts.as_ref(), order, clusters].into_iter().flatten().map(Buffer::size);
         splats.chain(others).sum()
     }
 
@@ -327,6 +355,10 @@ impl SceneResources {
         };
         let target = Buffer::readback(device, "read splats", splats.size())?;
         Commands::new(device, false)?.run(|rec| copy_to_host(rec, splats, &target))?;
+        let culled = match (&self.range, &self.clusters) {
+            (Some(range), Some(_)) => range.list.read_culled(device)?,
+            _ => Vec::new(),
+        };
         let order = self.order.as_ref().filter(|_| self.range.is_some());
         let order = order.map(|order| order.read(device).map(|words| (order, words))).transpose()?;
         let of_instance = |instance: u64| {
@@ -335,8 +367,14 @@ impl SceneResources {
                 (None, Some(range)) => SPLAT * range.first_splat(capacity, &self.batches, instance),
                 (None, None) => 0,
             } as usize;
-            let in_slots: Vec<Splat> =
+            let mut in_slots: Vec<Splat> =
                 bytemuck::pod_collect_to_vec(&target.bytes()[start..start + size as usize]);
+            let of_clusters = culled.iter().skip(start / (SPLAT * CLUSTER) as usize);
+            for (cluster, _) in
+                in_slots.chunks_mut(CLUSTER as usize).zip(of_clusters).filter(|(_, culled)| **culled)
+            {
+                cluster.fill(Splat::zeroed());
+            }
             match &order {
                 Some((order, words)) => order.by_surfel(&in_slots, words),
                 None => in_slots,
@@ -377,13 +415,19 @@ pub(super) fn copy_to_host(rec: &mut Recorder<'_>, from: &Buffer, to: &Buffer) {
     rec.wait(&[to.with(Access::HOST_READ)]);
 }
 
+/// Sum of both.
+pub fn sum(a: Counts, b: Counts) -> Counts {
+    Counts {
+        culled: std::array::from_fn(|i| a.culled[i].saturating_add(b.culled[i])),
+        in_clusters: a.in_clusters.saturating_add(b.in_clusters),
+    }
+}
+
 /// Sums the counters of all chunks.
 pub fn counts_in(bytes: &[u8]) -> Counts {
     let chunks = bytes.chunks_exact(ALIGNMENT as usize);
-    let culled =
-        chunks.map(|chunk| bytemuck::pod_read_unaligned::<Counts>(&chunk[..size_of::<Counts>()]).culled);
-    let add = |sum: [u32; 5], counts: [u32; 5]| std::array::from_fn(|i| sum[i].saturating_add(counts[i]));
-    Counts { culled: culled.fold([0; 5], add) }
+    let counts = chunks.map(|chunk| bytemuck::pod_read_unaligned::<Counts>(&chunk[..size_of::<Counts>()]));
+    counts.fold(Counts::zeroed(), sum)
 }
 
 impl<'a> InstanceRun<'a> {
@@ -404,18 +448,22 @@ impl<'a> InstanceRun<'a> {
     /// The chunks of the run that a pass is recorded for.
     pub fn chunks(&self, scope: Scope, pass: &Pass) -> Vec<ChunkRun<'a>> {
         match scope {
-            Scope::Surfels => self.surfels(pass).collect(),
+            Scope::Surfels | Scope::Clusters => self.surfels(scope, pass).collect(),
             Scope::Lines | Scope::Triangles | Scope::View => self.elements(scope).into_iter().collect(),
         }
     }
 
-    fn surfels(&self, pass: &Pass) -> impl Iterator<Item = ChunkRun<'a>> {
+    fn surfels(&self, scope: Scope, pass: &Pass) -> impl Iterator<Item = ChunkRun<'a>> {
         let present = (self.first + self.count
             - self.scene.batches.range(self.scene.batches.of(self.first)[0]).start)
             as u32;
         let (scene, [batch, instance]) = (self.scene, self.scene.batches.of(self.first));
         let moved = [&raw const footprint::MOVED, &raw const visibility::RASTER].contains(&&raw const *pass);
-        let sets = if moved && scene.moved.is_some() { &scene.sets.moved } else { &scene.sets.surfels };
+        let sets = match scope {
+            Scope::Clusters => &scene.sets.clusters,
+            _ if moved && scene.moved.is_some() => &scene.sets.moved,
+            _ => &scene.sets.surfels,
+        };
         let chunks = scene.chunks.len();
         let sets = &sets[chunks * batch as usize..chunks * (batch as usize + 1)];
         let instances = self.count as u32;
@@ -436,9 +484,16 @@ impl<'a> InstanceRun<'a> {
                     as u32,
                 attribute_rows: scene.range.as_ref().map_or(0, |range| range.list.rows()) as u32,
                 instance_count: present,
+                first_node: scene
+                    .range
+                    .as_ref()
+                    .map_or(0, |range| range.first_node(&scene.batches, batch, &scene.chunks, index))
+                    as u32,
             };
+            let visible = scene.clusters.as_ref();
+            let visible = visible.map(|clusters| (clusters.buffer(), clusters.start(batch, index)));
             let capacity = scene.batches.len(batch) as u32;
-            ChunkRun { set, counts: scene.count_sets.get(index), chunk, instances, capacity }
+            ChunkRun { set, counts: scene.count_sets.get(index), chunk, instances, capacity, visible }
         })
     }
 
@@ -446,7 +501,7 @@ impl<'a> InstanceRun<'a> {
         let kind = match scope {
             Scope::Lines => 0,
             Scope::Triangles => 1,
-            Scope::View | Scope::Surfels => return None,
+            Scope::View | Scope::Surfels | Scope::Clusters => return None,
         };
         let [batch, instance] = self.scene.batches.of(self.first);
         let [count, first] = self.scene.elements[kind]?;
@@ -462,8 +517,9 @@ impl<'a> InstanceRun<'a> {
             first_clip: 0,
             attribute_rows: 0,
             instance_count: 0,
+            first_node: 0,
         };
         let instances = self.count as u32;
-        Some(ChunkRun { set, counts: None, chunk, instances, capacity: instances })
+        Some(ChunkRun { set, counts: None, chunk, instances, capacity: instances, visible: None })
     }
 }

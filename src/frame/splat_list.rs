@@ -1,22 +1,27 @@
 //! Splat list: the splats of all scenes of a frame on the tile path, and the hierarchy of boxes above them.
 
 use super::resource::Resource;
-use super::scene_resources::batches_of;
+use super::scene_resources::{batches_of, copy_to_host};
 use super::splat_buffers::{ALIGNMENT, Batches, SPLAT};
 use super::variant::{TileWorkgroup, Variant};
 use crate::error::Result;
-use crate::scene::Scene;
 use crate::scene::instance::Placed;
+use crate::scene::{CLUSTER, Scene};
 use crate::vk::shaders::layout::{Hierarchy, Level, ScreenClip};
 use crate::vk::shaders::{self, resource};
-use crate::vk::{Binding, Buffer, Device, TexelView};
+use crate::vk::{Binding, Buffer, Commands, Device, TexelView};
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Children of a node of the hierarchy: FAN_OUT of `lib/box.glsl`.
 const FAN_OUT: u64 = 8;
 /// Level whose nodes a walk visits near to far; always present.
 const BLOCKS: u32 = 3;
+/// Level whose nodes are clusters: CLUSTER_LEVEL of `lib/cluster.glsl`; always present.
+const CLUSTERS: usize = 2;
+/// Last word of the box of a culled cluster: CULLED_CLUSTER of `lib/cluster.glsl`.
+const CULLED_CLUSTER: u32 = 0;
 /// Level whose nodes are slices of 32,768 splats: the most that a walk over a tile visits in a dispatch.
 const SLICES: u32 = 5;
 /// Bytes of a box.
@@ -25,8 +30,10 @@ pub const BOX: u64 = 16;
 pub const ATTRIBUTE_ROW: u64 = 16;
 /// Largest ratio of a list's capacity to the required one before it is reallocated: coarse and fine scenes alternate.
 const MOST_EXCESS: u64 = 32;
-/// Splat alignment of ranges of the list, so that ranges of all its buffers are aligned.
-pub const RANGE: u64 = ALIGNMENT / BOX;
+/// Splat alignment of ranges of the list, so that clusters are nodes and ranges of all its buffers are aligned.
+const RANGE: u64 = CLUSTER;
+
+const _: () = assert!(CLUSTER == FAN_OUT.pow(CLUSTERS as u32) && (RANGE * BOX).is_multiple_of(ALIGNMENT));
 
 /// Screen clip alignment of ranges of the list.
 const CLIP_RANGE: u64 = ALIGNMENT / size_of::<ScreenClip>() as u64;
@@ -150,7 +157,7 @@ impl SplatList {
                 list.push((&resource::SPLAT_TEXELS, Binding::Texels(&texels.splats)));
                 list.push((&resource::ATTRIBUTE_TEXELS, Binding::Texels(&texels.attributes)));
                 // Written levels: those above the splats.
-                let start = BOX * self.levels[0].boxes;
+                let start = BOX * self.written();
                 list.push((
                     &resource::BOXES,
                     Binding::Storage(&self.boxes, start, self.boxes.size() - start),
@@ -236,18 +243,40 @@ impl SplatList {
         }
     }
 
+    /// First box of those that are bound for writing: texel buffers are read through other bindings.
+    fn written(&self) -> u64 {
+        if self.texels.is_some() { self.levels[0].boxes } else { 0 }
+    }
+
+    /// Node of the cluster that begins with a splat, among the boxes that are bound for writing.
+    pub fn cluster_of(&self, splat: u64) -> u64 {
+        self.levels[CLUSTERS].start - self.written() + splat / CLUSTER
+    }
+
+    /// Reads back which clusters of splats the last frame culled.
+    pub fn read_culled(&self, device: &Arc<Device>) -> Result<Vec<bool>> {
+        let target = Buffer::readback(device, "read boxes", self.boxes.size())?;
+        Commands::new(device, false)?.run(|rec| copy_to_host(rec, &self.boxes, &target))?;
+        let words: Vec<[u32; 4]> = bytemuck::pod_collect_to_vec(target.bytes());
+        let nodes = words.iter().skip(self.levels[CLUSTERS].start as usize);
+        Ok(nodes.take(self.levels[CLUSTERS].boxes as usize).map(|node| node[3] == CULLED_CLUSTER).collect())
+    }
+
     /// Push constants that build the levels above so many splats, fine to coarse.
     pub fn steps(&self, splats: u64) -> impl Iterator<Item = Level> {
-        let written = if self.texels.is_some() { self.levels[0].boxes } else { 0 };
+        let written = self.written();
+        let clusters = self.levels[CLUSTERS].start as u32;
         // Nodes above the padding of a long list are neither built nor read.
         let mut finer = splats;
-        self.levels.windows(2).map(move |pair| {
+        self.levels.windows(2).zip(1..).map(move |(pair, number)| {
             let nodes = finer.div_ceil(FAN_OUT).max(1).next_multiple_of(FAN_OUT);
             let step = Level {
                 finer_start: pair[0].start as u32,
                 start: (pair[1].start - written) as u32,
                 count: nodes as u32,
                 finer_count: finer as u32,
+                number,
+                clusters,
             };
             finer = nodes;
             step
@@ -356,6 +385,13 @@ impl ListRange {
     pub fn first_clip(&self, batches: &Batches, batch: u64, chunk: usize) -> u64 {
         let [all, before]: [u64; 2] = [self.clips.iter().sum(), self.clips.iter().take(chunk).sum()];
         self.first.clips + all * batches.range(batch).start + before * batches.len(batch)
+    }
+
+    /// Node of the first cluster of a chunk in a batch, see [`SplatList::cluster_of`].
+    pub fn first_node(&self, batches: &Batches, batch: u64, chunks: &[Range<u64>], index: usize) -> u64 {
+        let capacity = chunks.last().map_or(0, |chunk| chunk.end);
+        let first = self.first_splat(capacity, batches, batches.range(batch).start);
+        self.list.cluster_of(first + chunks[index].start)
     }
 
     /// Bindings of the footprint pass for a chunk in a batch.

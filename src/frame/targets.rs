@@ -83,6 +83,7 @@ impl Resource {
                 &resource::SPLAT_TEXELS,
             ],
             Self::Order => &[&resource::ORDER],
+            Self::VisibleClusters => &[&resource::VISIBLE_CLUSTERS],
             Self::Boxes => &[&resource::SPLAT_BOXES, &resource::BOXES, &resource::BOX_TEXELS],
             Self::Attributes => {
                 &[&resource::SPLAT_ATTRIBUTES, &resource::FRAME_ATTRIBUTES, &resource::ATTRIBUTE_TEXELS]

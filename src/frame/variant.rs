@@ -69,6 +69,8 @@ pub struct Variant {
     pub clips: bool,
     /// Tile path: some scene's surfels are in arbitrary order.
     pub unordered: bool,
+    /// Compute path: some scene has bounds of its clusters of surfels, which are culled.
+    pub clusters: bool,
     /// Tile path: some normalization weights are at the corners of surfels' squares.
     pub corners: bool,
     /// Tile path: workgroups of tile passes.
@@ -128,6 +130,8 @@ pub struct SceneVariant {
     pub instanced: bool,
     /// Splats are in another order than the scene's surfels, which are in arbitrary order.
     pub unordered: bool,
+    /// The scene has bounds of its clusters, and the frame culls these.
+    pub bounded: bool,
 }
 
 /// Optional streams that a scene has.
@@ -205,6 +209,7 @@ impl Variant {
             sliced: false,
             clips: tiled && streams.iter().any(|streams| streams.clips),
             unordered: tiled && streams.iter().any(|streams| streams.unordered),
+            clusters: rasterizer == Rasterizer::Compute && streams.iter().any(|streams| streams.clusters),
             corners: tiled && weights && streams.iter().any(|streams| streams.weights == Some(true)),
             workgroup: TileWorkgroup::default(),
         }
@@ -313,6 +318,7 @@ impl Variant {
             .with(constant::CLIPS, self.clips)
             .with(constant::BEYOND_CLIPS, self.coverage && self.clips)
             .with(constant::SLICED, self.sliced)
+            .with(constant::CLUSTERS, self.clusters)
             .with(constant::FRAME_WEIGHTS, self.weights)
             .with(constant::FRAME_CORNERS, self.corners)
     }
@@ -350,6 +356,7 @@ impl SceneVariant {
             unchecked: streams.unchecked.then_some(streams.colours),
             instanced,
             unordered: streams.unordered && frame.is_tiled(),
+            bounded: streams.clusters && frame.clusters,
         }
     }
 
@@ -371,9 +378,11 @@ impl SceneVariant {
                 (&resource::SCREEN_CLIPS, clips),
                 (&resource::SPLATS, splats),
                 (&resource::ORDER, self.unordered),
+                (&resource::VISIBLE_CLUSTERS, frame.clusters),
                 (&resource::SPLAT_BOXES, frame.is_tiled()),
                 (&resource::SPLAT_ATTRIBUTES, frame.is_tiled()),
             ],
+            Scope::Clusters => &[(&resource::CLUSTERS, self.bounded), (&resource::VISIBLE_CLUSTERS, true)],
             Scope::Lines | Scope::Triangles => &[
                 (&resource::VERTICES, true),
                 (&resource::LINE_DIRECTIONS, self.primitives.lines),

@@ -55,6 +55,7 @@ impl Scene {
             two_sided: external.two_sided,
             ellipses: external.ellipses,
             clips: None,
+            clusters: None,
             colours: external.colours,
             weights: None,
             primitives: None,

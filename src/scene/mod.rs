@@ -2,6 +2,7 @@
 
 mod chunks;
 mod clips;
+mod clusters;
 mod external;
 pub(crate) mod instance;
 mod live;
@@ -23,6 +24,8 @@ use crate::vk::{Binding, Buffer, Device, Uploads};
 use chunks::{chunks, step};
 pub(crate) use clips::ClipChunk;
 use clips::ClipStream;
+pub(crate) use clusters::CLUSTER;
+use clusters::Clusters;
 pub(crate) use external::ExternalBuffers;
 use glam::{DVec3, Vec3};
 pub use instance::{Instance, Instances};
@@ -51,6 +54,8 @@ pub struct Scene {
     two_sided: bool,
     ellipses: Option<Stream>,
     clips: Option<ClipStream>,
+    /// Bounds by which frames cull; absent for surfels in arbitrary order and in buffers of the host.
+    clusters: Option<Clusters>,
     colours: Option<Stream>,
     pub(crate) weights: Option<WeightBuffer>,
     pub(crate) primitives: Option<PrimitiveStreams>,
@@ -141,6 +146,8 @@ impl Scene {
         let stream = |name, bytes: &[u8], size| {
             uploads.buffer(name, bytes).map(|buffer| Stream::side_by_side(buffer, size))
         };
+        let order = Order::of(&surfels.positions);
+        let coherent = order == Order::Coherent && count > 0;
         let scene = Self {
             id: next_id(),
             positions: stream("positions", bytemuck::cast_slice(&surfels.positions), VECTOR)?,
@@ -161,6 +168,7 @@ impl Scene {
                 .as_ref()
                 .map(|clips| ClipStream::new(uploads, clips, &chunks))
                 .transpose()?,
+            clusters: coherent.then(|| Clusters::new(uploads, surfels)).transpose()?,
             primitives: PrimitiveStreams::new(device, uploads, &parts)?,
             texture: image.map(|image| TextureStream::new(device, uploads, image)).transpose()?,
             materials: MaterialStream::new(device, uploads, &parts)?,
@@ -169,7 +177,7 @@ impl Scene {
             origin: parts.origin(),
             largest: Some(AtomicU32::new(largest(&surfels.radii).to_bits())),
             of_host: false,
-            order: Order::of(&surfels.positions),
+            order,
             curve_box: order::bulk(&surfels.positions),
             had_invalid: invalid > 0,
             unchecked: AtomicBool::new(false),
@@ -210,6 +218,7 @@ impl Scene {
     /// Memory of the streams, without buffers of a host, bytes.
     pub fn bytes(&self) -> u64 {
         let clips = self.clips.as_ref().map(|clips| &clips.buffer);
+        let clusters = self.clusters.as_ref().map(|clusters| &clusters.buffer);
         let weights = self.weights.as_ref().map(|weights| &weights.buffer);
         let texture = self.texture.as_ref().map(|texture| &texture.buffer);
         let materials = self.materials.as_ref().map(|materials| &materials.buffer);
@@ -217,7 +226,7 @@ impl Scene {
         let streams = streams.into_iter().chain([self.ellipses.as_ref(), self.colours.as_ref()]);
         let streams = streams.map(|stream| stream.map(|stream| &stream.buffer));
         let buffers = streams
-            .chain([clips, weights, texture, materials])
+            .chain([clips, clusters, weights, texture, materials])
             .flatten()
             .filter(|buffer| !buffer.is_external());
         let primitives = self.primitives.as_ref().map_or(0, PrimitiveStreams::bytes);
@@ -244,6 +253,7 @@ impl Scene {
             unchecked: self.unchecked.load(Ordering::Relaxed),
             // Fewer buffers than every device has for shaders: clips and weights are of captured files, which are sorted.
             unordered: self.order == Order::Arbitrary && self.clips.is_none() && self.weights.is_none(),
+            clusters: self.clusters.is_some(),
         }
     }
 
@@ -290,6 +300,11 @@ impl Scene {
         list.extend(self.clips.as_ref().map(|clips| (&resource::CLIPS, clips.binding(number))));
         list.extend(self.weights.as_ref().map(|weights| (&resource::WEIGHTS, weights.binding(number))));
         list
+    }
+
+    /// Bounds of its clusters of surfels.
+    pub(crate) fn cluster_bindings(&self) -> Option<(&'static Resource, Binding<'_>)> {
+        self.clusters.as_ref().map(|clusters| (&resource::CLUSTERS, Binding::whole(&clusters.buffer)))
     }
 
     /// Resources and bindings of the lines, or with `kind` 1 of the triangles.

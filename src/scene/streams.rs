@@ -28,6 +28,8 @@ pub struct Streams {
     pub unchecked: bool,
     /// The surfels are in arbitrary order, so frames by tiles sort them.
     pub unordered: bool,
+    /// The bounds of clusters of consecutive surfels are known, so frames by compute shaders cull these.
+    pub clusters: bool,
 }
 
 impl Streams {
@@ -45,6 +47,7 @@ impl Streams {
             layout: SurfelLayout::side_by_side(colours),
             unchecked: false,
             unordered: false,
+            clusters: true,
         }
     }
 

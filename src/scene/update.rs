@@ -63,6 +63,9 @@ impl Scene {
             // The bits of non-negative floats are in the order of the floats.
             known.fetch_max(largest(radii).to_bits(), Ordering::Relaxed);
         }
+        if let Some(clusters) = &self.clusters {
+            clusters.change(uploads, range, changes, self.capacity())?;
+        }
         write(uploads, Some(&self.positions), first, changes.positions)?;
         write(uploads, Some(&self.normals), first, changes.normals)?;
         let radii = changes.radii.map(|radii| marked(radii, changes.two_sided));

@@ -125,6 +125,15 @@ impl Access {
         Self { layout: vk::ImageLayout::GENERAL, ..self }
     }
 
+    /// The access of a buffer that also holds the workgroups of an indirect dispatch.
+    pub fn and_indirect(self) -> Self {
+        Self {
+            stages: self.stages | vk::PipelineStageFlags::DRAW_INDIRECT,
+            mask: self.mask | vk::AccessFlags::INDIRECT_COMMAND_READ,
+            ..self
+        }
+    }
+
     /// Pipeline stages.
     pub const fn stages(self) -> vk::PipelineStageFlags {
         self.stages

@@ -25,6 +25,13 @@ impl Buffer {
         Self::new(device, name, size, usage, Location::Device)
     }
 
+    /// As [`Buffer::storage`], for the workgroups of indirect dispatches, too.
+    pub fn indirect(device: &Arc<Device>, name: &str, size: u64) -> Result<Self> {
+        use vk::BufferUsageFlags as Usage;
+        let usage = Usage::STORAGE_BUFFER | Usage::TRANSFER_DST | Usage::INDIRECT_BUFFER;
+        Self::new(device, name, size, usage, Location::Device)
+    }
+
     /// As [`Buffer::storage`], for a [`TexelView`], too.
     pub fn texels(device: &Arc<Device>, name: &str, size: u64) -> Result<Self> {
         use vk::BufferUsageFlags as Usage;

@@ -97,6 +97,24 @@ impl<'r, 'a> Encoder<'r, 'a> {
         }
     }
 
+    /// Like [`Encoder::dispatch`]. The three numbers of workgroups are at byte `offset` of a buffer of [`Buffer::indirect`].
+    pub fn dispatch_indirect(
+        &mut self,
+        pipeline: &ComputePipeline,
+        sets: &[&DescriptorSet],
+        push: &impl bytemuck::NoUninit,
+        (workgroups, offset): (&Buffer, u64),
+    ) {
+        assert!(fits(offset, 12, workgroups), "{offset} is beyond the buffer");
+        let (device, cmd) = (self.rec.device, self.rec.cmd);
+        let (point, push) = (vk::PipelineBindPoint::COMPUTE, bytemuck::bytes_of(push));
+        // SAFETY: recorded outside a render pass, with objects of one device that outlive the frame; the buffer has the numbers.
+        unsafe {
+            self.bound.bind((device, cmd), pipeline.raw(), point, sets, push);
+            device.raw.cmd_dispatch_indirect(cmd, workgroups.raw, offset);
+        }
+    }
+
     /// Begins a render pass over all of `framebuffer`, which ends when the result is dropped. Cleared targets start at 0.
     pub fn render(&mut self, framebuffer: &Framebuffer) -> Draws<'_> {
         self.render_over(framebuffer, [0.0; 4])

@@ -4,6 +4,7 @@
 mod barriers;
 mod buffers;
 mod call_depth;
+mod clusters;
 mod compare;
 mod composite;
 mod fixture;
@@ -19,6 +20,7 @@ mod native_live;
 mod native_refused;
 mod native_rig;
 mod pipelines;
+mod raw_buffer;
 mod reports;
 mod rig;
 #[path = "../support/mod.rs"]

@@ -123,14 +123,14 @@ fn instances_of_a_scene_share_allocations() {
             |i: usize| exact(0.5, [0.0; 3], [(i % 40) as f64 / 8.0 - 1.0, (i / 40) as f64 / 8.0, 0.0]);
         (0..count).map(|i| Instance::new(&scene, place(i))).collect()
     };
-    for (rasterizer, tile_buffers) in [(Rasterizer::Draw, 0), (Rasterizer::Compute, 2)] {
+    for (rasterizer, tile_buffers) in [(Rasterizer::Draw, 0), (Rasterizer::Compute, 3)] {
         let mut renderer = Renderer::new(&device, options(rasterizer)).unwrap();
         let settings = settings("perspective-ewa");
         renderer.render(&instances(1)[..], &perspective(), &settings).unwrap();
         let before = device.usage();
         renderer.render(&instances(2000)[..], &perspective(), &settings).unwrap();
         let made = device.usage();
-        // Splats, views, and on the tile path boxes and attributes.
+        // Splats, views, and on the tile path boxes, attributes and visible clusters.
         assert_eq!(made.allocations - before.allocations, 2 + tile_buffers, "{rasterizer:?}");
         let splats = 2000 * 50 * size_of::<surfel::frame::Splat>() as u64;
         assert!(
@@ -325,15 +325,16 @@ fn ids_continue_from_scene_to_scene() {
 #[test]
 fn counts_are_summed_and_passes_are_the_same() {
     let Some(device) = device(DeviceLimits::default()) else { return };
-    // In Morton order: surfels with clip lines are never sorted, others would be.
-    let (mut a, b) = (painted(3_000), rich(1_500));
-    a.sort_morton();
+    // All in Morton order: others are sorted, or their clusters are not culled.
+    let (mut a, mut b) = (painted(3_000), rich(1_500));
+    [&mut a, &mut b].into_iter().for_each(Surfels::sort_morton);
     let list = uploaded(&device, &intersecting(&a, &b));
     for name in ["perspective-ewa", "sprites-unfiltered", "pull-push"] {
         for rasterizer in RASTERIZERS {
             let options = RenderOptions { count: true, profile: true, ..options(rasterizer) };
             let settings = settings(name);
-            let one = merged(&intersecting(&a, &b), settings.lighting.albedo);
+            let mut one = merged(&intersecting(&a, &b), settings.lighting.albedo);
+            one.sort_morton();
             let alone = Scene::upload(&device, &one).unwrap();
             let mut renderer = Renderer::new(&device, options).unwrap();
             let (_, placed) = renderer.render_picture(&list, &perspective(), &settings).unwrap();

@@ -242,9 +242,13 @@ impl Sweeper<'_> {
 
 /// Culled surfels on the device, and those of the reference if they differ: at a threshold, rounding decides.
 fn cull_reasons(device: &SplatCounts, reference: &Counts) -> String {
-    let SplatCounts { drawn: _, behind, eye_plane, back, outside, invalid } = *device;
+    let SplatCounts { behind, eye_plane, back, outside, invalid, .. } = *device;
+    // A surfel that is back and outside may count as either.
+    let same = (back + outside) as usize == reference.back + reference.outside;
+    let [back_expected, outside_expected] =
+        if same { [back as usize, outside as usize] } else { [reference.back, reference.outside] };
     let expected =
-        [reference.behind, reference.eye_plane, reference.back, reference.outside, reference.invalid];
+        [reference.behind, reference.eye_plane, back_expected, outside_expected, reference.invalid];
     let names = ["behind", "at the eye plane", "facing away", "outside", "invalid"];
     let reasons = names.into_iter().zip([behind, eye_plane, back, outside, invalid]).zip(expected);
     let texts = reasons.filter_map(|((name, count), expected)| {

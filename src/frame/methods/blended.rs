@@ -5,10 +5,11 @@
 //!                         └──── attribute ──→ Σw, Σw n, Σw rgb, Σw κ ─ normalize → picture, normal, depth
 //! ```
 //!
-//! On the compute path, the last three are one dispatch over tiles, `surface`, which finds the splats of a tile by `boxes`:
+//! On the compute path, `cull` leaves out clusters of surfels outside the picture, and the last three are one dispatch over tiles, `surface`,
+//! which finds the splats of a tile by `boxes`:
 //!
 //! ```text
-//! surfels ─ footprint → splats ─ boxes → hierarchy ─ surface → picture, normal, depth
+//! surfels ─ cull → clusters ─ footprint → splats ─ boxes → hierarchy ─ surface → picture, normal, depth
 //! ```
 //!
 //! If ε is measured along the camera's axis, visibility has its own footprints, of discs moved by ε.

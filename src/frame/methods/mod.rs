@@ -5,6 +5,7 @@ mod nearest;
 mod pull_push;
 
 use super::pass::Pass;
+use super::passes::cull::CULL;
 use super::passes::order::ORDER;
 use super::variant::Variant;
 use crate::settings::Rasterizer;
@@ -21,14 +22,17 @@ pub enum Path {
     Subpasses { seed: bool },
 }
 
-/// Passes of a frame of `variant` with so many scenes, in order; in subpasses of a host, raster passes are last. If a scene's surfels are in
-/// arbitrary order, frames by tiles sort them first.
+/// Passes of a frame of `variant` with so many scenes, in order; in subpasses of a host, raster passes are last. Frames by
+/// tiles first sort surfels in arbitrary order, and cull clusters of surfels with known bounds.
 pub fn passes(variant: &Variant, path: Path, scenes: usize) -> Vec<&'static Pass> {
     let mut list = match (variant.pull_push, variant.visibility) {
         (Some(settings), _) => pull_push::passes(variant, settings.storage, scenes),
         (None, Visibility::Nearest) => nearest::passes(path),
         (None, visibility) => blended::passes(path, visibility == Visibility::Axis, variant.split),
     };
+    if variant.clusters {
+        list.insert(0, &CULL);
+    }
     if variant.unordered {
         list.insert(0, &ORDER);
     }

@@ -7,7 +7,7 @@
 //! On the compute path, `nearest` finds the splats of a tile by `boxes`, and writes the picture:
 //!
 //! ```text
-//! surfels ─ footprint → splats ─ boxes → hierarchy ─ nearest → picture, normal, depth
+//! surfels ─ cull → clusters ─ footprint → splats ─ boxes → hierarchy ─ nearest → picture, normal, depth
 //! ```
 
 use super::Path;

@@ -6,6 +6,7 @@
 pub mod attribute;
 pub mod boxes;
 pub mod copy;
+pub mod cull;
 pub mod fetch;
 pub mod footprint;
 pub mod nearest;
@@ -71,7 +72,8 @@ mod tests {
         all
     }
 
-    const RESOURCES: [Resource; 22] = [
+    const RESOURCES: [Resource; 23] = [
+        Resource::VisibleClusters,
         Resource::Order,
         Resource::Splats,
         Resource::Boxes,
@@ -112,6 +114,7 @@ mod tests {
                 layout: SurfelLayout::side_by_side(ColourStream::None),
                 unchecked: rich,
                 unordered: rich,
+                clusters: rich,
             };
             for (alpha, rasterizer) in [Alpha::Mask, Alpha::Coverage]
                 .into_iter()
@@ -144,9 +147,6 @@ mod tests {
             for program in variants().iter().flat_map(|variant| programs(pass, variant)) {
                 for (declared, writes) in program.modules().iter().flat_map(|module| module.resources) {
                     let known = RESOURCES.iter().find(|resource| resource.is_bound_as(declared));
-                    // Moved discs are not counted: a constant disables it.
-                    let uncounted = std::ptr::eq(pass, &raw const footprint::MOVED);
-                    let known = known.filter(|known| !(uncounted && **known == Resource::Counts));
                     bindings.extend(known.map(|resource| (*resource, *writes)));
                 }
             }

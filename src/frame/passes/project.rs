@@ -4,7 +4,9 @@
 //! always take the compute path.
 
 use crate::frame::pass::{Commands, Domain, DrawTargets, InitialContents, Pass, Program, Programs};
-use crate::frame::resource::Resource::{Counts, LargeTriangles, Nearest, NearestDepth, NearestId};
+use crate::frame::resource::Resource::{
+    Counts, LargeTriangles, Nearest, NearestDepth, NearestId, VisibleClusters,
+};
 use crate::frame::variant::SceneVariant;
 use crate::vk::shaders::{
     POINTS_FRAGMENT, POINTS_VERTEX, PROJECT_COMPUTE, PROJECT_COUNT_ONLY_COMPUTE, PROJECT_LINES_COMPUTE,
@@ -23,11 +25,12 @@ fn primitives(variant: &SceneVariant) -> impl Iterator<Item = Program> {
 /// Compute path: surfels, lines and triangles.
 pub static COMPUTE: Pass = Pass {
     name: "project",
-    reads: &[],
+    reads: &[VisibleClusters],
     writes: &[Nearest, LargeTriangles, Counts],
-    clears: &[Nearest, LargeTriangles, Counts],
+    clears: &[Nearest, LargeTriangles],
     programs: Programs::OfScene(|variant| {
-        let surfels = Program::compute(&PROJECT_COMPUTE, Domain::Surfels);
+        let domain = if variant.frame.clusters { Domain::VisibleClusters } else { Domain::Surfels };
+        let surfels = Program::compute(&PROJECT_COMPUTE, domain);
         std::iter::once(surfels).chain(primitives(variant)).collect()
     }),
     commands: Commands::Dispatches,
@@ -78,7 +81,7 @@ pub static PRIMITIVES: Pass = Pass {
     name: "project",
     reads: &[],
     writes: &[Nearest, LargeTriangles, Counts],
-    clears: &[LargeTriangles, Counts],
+    clears: &[LargeTriangles],
     programs: Programs::OfScene(|variant| {
         let counted = Program::compute(&PROJECT_COUNT_ONLY_COMPUTE, Domain::Surfels);
         variant.frame.count.then_some(counted).into_iter().chain(primitives(variant)).collect()

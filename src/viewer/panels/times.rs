@@ -257,6 +257,7 @@ fn show_counts(ui: &mut Ui, counts: &SplatCounts) {
 fn pass_text(label: &str) -> &'static str {
     match label {
         "clear" => "Clears counts and lists.",
+        "cull" => "Culls clusters of surfels by their bounds.",
         "footprint" => "Projects surfels to splats, culls and counts them.",
         "visibility" => "Renders the depth of the nearest surface from the splats.",
         "boxes" => "Bounds the splats of each node of the hierarchy.",

@@ -1,0 +1,113 @@
+// Cull: lists the clusters of surfels that may have splats, by their bounding boxes and normal cones.
+#version 450
+#pragma variant TILES
+#extension GL_GOOGLE_include_directive : require
+
+#include "lib/instance.glsl"
+#include "lib/footprint_kind.glsl"
+#ifdef TILES
+#include "lib/box.glsl"
+#endif
+#define VISIBLE_ACCESS
+#include "lib/visible_clusters.glsl"
+
+#ifdef COMPUTE
+
+#include "lib/cull_reasons.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(constant_id = 1) const bool CULL_BACK = false;
+layout(constant_id = 64) const bool BOUNDED = false; // the scene has bounds of its clusters
+
+// Bounds of the surfels of a cluster, without invalid ones.
+struct Cluster {
+    vec4 low;  // least corner of the centres; .w is the largest radius, below 0 if there is no surfel
+    vec4 high; // greatest corner; .w is the sine of the angle from the cone's axis within which all normals are, 2 if there is no such cone
+    vec4 axis; // of the normal cone
+};
+
+layout(set = 0, binding = 22, std430) readonly buffer Clusters { Cluster clusters[]; };
+#ifdef TILES
+layout(set = 1, binding = 6, std430) writeonly buffer Boxes { Box boxes[]; };
+#endif
+
+// Bound of the relative rounding errors of a sum of three products.
+const float ROUNDING = 1e-6;
+
+// Bounds of the values of gradient·p + constant for points p in a box.
+vec2 bounds_on(vec3 gradient, float constant, vec3 low, vec3 high) {
+    vec3 a = gradient * low, b = gradient * high;
+    vec3 least = min(a, b), most = max(a, b);
+    vec3 size = max(abs(least), abs(most));
+    float margin = ROUNDING * (size.x + size.y + size.z + abs(constant));
+    return vec2(least.x + least.y + least.z + constant - margin, most.x + most.y + most.z + constant + margin);
+}
+
+// Whether all splats of discs with centres in the box are beyond the side of the viewport at pixel `side` of an axis; `outward` is −1 for the
+// low side.
+//
+// Around the centre's projection x, at distance z, a splat extends by less than e = reach·f√(1 + x²/f²)/z + margin. A centre that is 2·reach
+// beyond the plane through the eye and the side moved outwards by the margin, with z ≥ 2·reach, has a splat beyond the side.
+bool is_beyond(uint axis, float outward, float side, float reach, float margin, vec3 low, vec3 high) {
+    float moved = side + outward * margin;
+    vec3 gradient = view.rows_hi[axis].xyz;
+    if (PERSPECTIVE) gradient -= moved * view.rows_hi[2].xyz;
+    float constant = PERSPECTIVE ? 0.0 : view.rows_hi[axis].w - moved;
+    float least = bounds_on(outward * gradient, outward * constant, low, high).x;
+    return least > 2.0 * reach * length(gradient);
+}
+
+bool is_outside(float reach, vec3 low, vec3 high) {
+    if (PERSPECTIVE && !(bounds_on(view.rows_hi[2].xyz, 0.0, low, high).x >= 2.0 * reach * length(view.rows_hi[2].xyz))) return false;
+    // The low-pass filter, the rounding of whole sprites, and rounding errors.
+    float margin = largest_stretch() * frame.cutoff * sqrt(frame.attribute_lowpass + frame.visibility_lowpass) + 2.0;
+    for (uint axis = 0; axis < 2; axis++) {
+        if (is_beyond(axis, -1.0, 0.0, reach, margin, low, high)) return true;
+        if (is_beyond(axis, 1.0, frame.viewport[axis], reach, margin, low, high)) return true;
+    }
+    return false;
+}
+
+// Whether the normals in the cone face away from the eye everywhere in the box.
+bool faces_away(Cluster cluster, float moved, vec3 low, vec3 high) {
+    if (!PERSPECTIVE) return dot(cluster.axis.xyz, view.forward_hi.xyz) >= cluster.high.w + ROUNDING;
+    float farthest = length(max(abs(low), abs(high))) + moved;
+    return bounds_on(cluster.axis.xyz, 0.0, low, high).x - moved >= (cluster.high.w + ROUNDING) * farthest;
+}
+
+// Cull reason of all of the cluster's surfels; DRAWN if some may be drawn.
+uint cull_reason(Cluster cluster) {
+    float radius = cluster.low.w;
+    if (radius < 0.0) return INVALID;
+    vec3 low = (cluster.low.xyz - view.eye_hi.xyz) - view.eye_lo.xyz, high = (cluster.high.xyz - view.eye_hi.xyz) - view.eye_lo.xyz;
+    // Discs may be moved by ε along the camera's axis.
+    float moved = frame.epsilon * radius;
+    if (PERSPECTIVE && bounds_on(view.rows_hi[2].xyz, 0.0, low, high).y + moved * length(view.rows_hi[2].xyz) < 0.0) return BEHIND;
+    if (CULL_BACK && faces_away(cluster, moved, low, high)) return BACK;
+    // Of the kinds of footprints, perspective ones extend farthest, less than 2 radii at z ≥ 2 radii: rims are at least half as far.
+    return is_outside(3.0 * largest_stretch() * radius + moved, low, high) ? OUTSIDE : DRAWN;
+}
+
+void main() {
+    uint cluster = gl_GlobalInvocationID.x, first = CLUSTER_SIZE * cluster;
+    if (first >= chunk.instance_stride) return;
+    if (cluster == 0 && gl_WorkGroupID.z == 0) layers = 1;
+    bool exists = first < chunk.count && instance_index() < chunk.instance_count;
+    uint reason = OUTSIDE;
+    if (exists) reason = BOUNDED ? cull_reason(clusters[chunk.first_id / CLUSTER_SIZE + cluster]) : DRAWN;
+#ifdef TILES
+    uint node = chunk.first_node + (instance_index() * chunk.instance_stride) / CLUSTER_SIZE + cluster;
+    boxes[node] = Box(EMPTY_BOX.xyz, reason == DRAWN ? EMPTY_BOX.w : CULLED_CLUSTER);
+#endif
+    if (reason == DRAWN) {
+        uint index = atomicAdd(visible_count, 1);
+        atomicMax(columns, min(index + 1, CLUSTER_COLUMNS));
+        atomicMax(rows, index / CLUSTER_COLUMNS + 1);
+        visible_clusters[index] = uvec2(cluster, instance_index());
+    } else if (exists) {
+        count_cluster(reason, min(chunk.count - first, CLUSTER_SIZE));
+    }
+}
+
+#endif

@@ -1,0 +1,237 @@
+//! Bounds of a scene's clusters of surfels, by which frames cull.
+
+use super::Changes;
+use crate::error::Result;
+use crate::geometry::Surfels;
+use crate::vk::shaders::layout::Cluster;
+use crate::vk::{Buffer, Uploads};
+use glam::Vec3;
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
+
+/// Consecutive surfels of a cluster: CLUSTER_SIZE of `lib/cluster.glsl`.
+pub(crate) const CLUSTER: u64 = 64;
+
+/// Bounds of all clusters.
+pub(crate) struct Clusters {
+    pub buffer: Buffer,
+    /// The bounds in the buffer, which updates extend.
+    bounds: Mutex<Vec<Bounds>>,
+}
+
+/// Bounds of a cluster's surfels, without those that are certainly invalid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Bounds {
+    low: Vec3,
+    high: Vec3,
+    radius: f32,
+    cone: Cone,
+    /// Some may be two-sided.
+    two_sided: bool,
+}
+
+/// Cone of normals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Cone {
+    /// No normals.
+    Empty,
+    /// Unit axis, and cosine of the largest angle of a normal from it, above 0.
+    Of(Vec3, f32),
+    /// All directions: normals differ by more.
+    All,
+}
+
+/// Margin of cosines for rounding errors.
+const ROUNDING: f32 = 1e-5;
+/// A sine that no angle has.
+const NO_CONE: f32 = 2.0;
+
+impl Clusters {
+    /// Bounds of the clusters of `surfels`.
+    pub fn new(uploads: &Uploads<'_>, surfels: &Surfels) -> Result<Self> {
+        let count = surfels.len() as u64;
+        let all = Changes {
+            positions: Some(&surfels.positions),
+            normals: Some(&surfels.normals),
+            radii: Some(&surfels.radii),
+            two_sided: surfels.two_sided.as_deref(),
+            ..Changes::default()
+        };
+        let bounds: Vec<_> = (0..count.div_ceil(CLUSTER))
+            .map(|index| Bounds::NONE.with(0..count, &all, range(index, count)))
+            .collect();
+        let words: Vec<_> = bounds.iter().map(Bounds::words).collect();
+        let buffer = uploads.buffer("clusters", bytemuck::cast_slice(&words))?;
+        Ok(Self { buffer, bounds: Mutex::new(bounds) })
+    }
+
+    /// Includes changes of the surfels `changed` of `count`, and uploads the bounds of their clusters.
+    pub fn change(
+        &self,
+        uploads: &Uploads<'_>,
+        changed: Range<u64>,
+        changes: &Changes<'_>,
+        count: u64,
+    ) -> Result<()> {
+        if changed.is_empty()
+            || (changes.positions.is_none() && changes.normals.is_none() && changes.radii.is_none())
+        {
+            return Ok(());
+        }
+        let first = changed.start / CLUSTER;
+        let indices = first..changed.end.div_ceil(CLUSTER);
+        let mut bounds = self.bounds.lock().unwrap_or_else(PoisonError::into_inner);
+        for index in indices.clone() {
+            let known = &mut bounds[index as usize];
+            *known = known.with(changed.clone(), changes, range(index, count));
+        }
+        let words: Vec<_> = bounds[first as usize..indices.end as usize].iter().map(Bounds::words).collect();
+        uploads.write(&self.buffer, first * size_of::<Cluster>() as u64, bytemuck::cast_slice(&words))
+    }
+}
+
+/// Surfels of a cluster, of `count`.
+fn range(index: u64, count: u64) -> Range<u64> {
+    index * CLUSTER..((index + 1) * CLUSTER).min(count)
+}
+
+impl Bounds {
+    const NONE: Self = Self {
+        low: Vec3::INFINITY,
+        high: Vec3::NEG_INFINITY,
+        radius: 0.0,
+        cone: Cone::Empty,
+        two_sided: false,
+    };
+
+    /// These bounds of the surfels `own`, with changes of `changed`: extended, or replaced in the streams of which all values are new.
+    fn with(&self, changed: Range<u64>, changes: &Changes<'_>, own: Range<u64>) -> Self {
+        let common = own.start.max(changed.start)..own.end.min(changed.end);
+        let old = if common == own { &Self::NONE } else { self };
+        let part = (common.start - changed.start) as usize..(common.end - changed.start) as usize;
+        let mut new = *self;
+        if let Some(positions) = changes.positions {
+            let bounded =
+                positions[part.clone()].iter().filter(|p| p.abs().cmple(Vec3::splat(Surfels::LARGEST)).all());
+            (new.low, new.high) =
+                bounded.fold((old.low, old.high), |(low, high), p| (low.min(*p), high.max(*p)));
+        }
+        if let Some(radii) = changes.radii {
+            new.radius = super::largest(&radii[part.clone()]).max(old.radius);
+        }
+        if let Some(normals) = changes.normals {
+            new.cone = old.cone.with(&normals[part.clone()]);
+        }
+        if let Some(two_sided) = changes.two_sided {
+            new.two_sided = old.two_sided || two_sided[part].contains(&true);
+        }
+        new
+    }
+
+    fn words(&self) -> Cluster {
+        let (axis, cosine) = match self.cone {
+            Cone::Of(axis, cosine) if !self.two_sided => {
+                (axis, Some(cosine - ROUNDING).filter(|cosine| *cosine > 0.0))
+            }
+            _ => (Vec3::ZERO, None),
+        };
+        let sine = cosine.map_or(NO_CONE, |cosine| (1.0 - cosine * cosine).max(0.0).sqrt());
+        let is_empty = self.low.cmpgt(self.high).any();
+        let radius = if is_empty { -1.0 } else { self.radius };
+        let [low, high] = if is_empty { [Vec3::ZERO; 2] } else { [self.low, self.high] };
+        Cluster {
+            low: low.extend(radius).to_array(),
+            high: high.extend(sine).to_array(),
+            axis: axis.extend(0.0).to_array(),
+        }
+    }
+}
+
+impl Cone {
+    /// The cone with these normals; those that are not finite are invalid.
+    fn with(self, normals: &[Vec3]) -> Self {
+        let units =
+            || normals.iter().map(|normal| normal.normalize_or_zero()).filter(|unit| *unit != Vec3::ZERO);
+        let (old, cosine) = match self {
+            Self::Empty => (Vec3::ZERO, 1.0),
+            Self::Of(axis, cosine) => (axis, cosine),
+            Self::All => return Self::All,
+        };
+        let sum = units().sum::<Vec3>();
+        // A cone about the old axis contains the old one.
+        let axis = if old == Vec3::ZERO { sum.normalize_or_zero() } else { old };
+        let least = units().map(|unit| unit.dot(axis)).fold(cosine, f32::min);
+        if sum == Vec3::ZERO && old == Vec3::ZERO && units().next().is_none() {
+            Self::Empty
+        } else if axis != Vec3::ZERO && least > 0.0 {
+            Self::Of(axis, least)
+        } else {
+            Self::All
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sheet() -> Surfels {
+        let positions: Vec<_> = (0..100).map(|i| Vec3::new((i % 10) as f32, (i / 10) as f32, 0.0)).collect();
+        let normals = positions.iter().map(|p| Vec3::new(0.01 * p.x, 0.0, 1.0).normalize()).collect();
+        Surfels { normals, radii: vec![0.5; 100], positions, ..Surfels::default() }
+    }
+
+    fn bounds(surfels: &Surfels, two_sided: Option<&[bool]>) -> Bounds {
+        let all = Changes {
+            positions: Some(&surfels.positions),
+            normals: Some(&surfels.normals),
+            radii: Some(&surfels.radii),
+            two_sided,
+            ..Changes::default()
+        };
+        Bounds::NONE.with(0..100, &all, 0..64)
+    }
+
+    #[test]
+    fn bounds_contain_the_surfels_of_the_cluster_only() {
+        let mut surfels = sheet();
+        surfels.positions[70].z = 9.0;
+        surfels.positions[5] = Vec3::NAN;
+        surfels.radii[7] = 0.75;
+        let found = bounds(&surfels, None);
+        assert_eq!((found.low, found.high, found.radius), (Vec3::ZERO, Vec3::new(9.0, 6.0, 0.0), 0.75));
+        let Cone::Of(axis, cosine) = found.cone else { panic!("{found:?}") };
+        assert!(surfels.normals[..64].iter().all(|normal| normal.dot(axis) >= cosine) && cosine > 0.99);
+        assert!(found.words().high[3] < 0.1);
+        let mut two_sided = vec![false; 100];
+        two_sided[70] = true;
+        assert_eq!(bounds(&surfels, Some(&two_sided)).cone, found.cone);
+        two_sided[3] = true;
+        let found = bounds(&surfels, Some(&two_sided));
+        assert_eq!(found.words().high[3], NO_CONE);
+        // New normals do not change the sides.
+        let normals = Changes { normals: Some(&surfels.normals), ..Changes::default() };
+        assert_eq!(found.with(0..100, &normals, 0..64).words().high[3], NO_CONE);
+        surfels.normals[20] = Vec3::NEG_Z;
+        assert_eq!(bounds(&surfels, None).cone, Cone::All);
+        surfels.positions = vec![Vec3::NAN; 100];
+        assert!(bounds(&surfels, None).words().low[3] < 0.0);
+    }
+
+    #[test]
+    fn updates_extend_bounds_and_replace_them_where_all_values_are_new() {
+        let surfels = sheet();
+        let old = bounds(&surfels, None);
+        let far = vec![Vec3::splat(20.0); 64];
+        let of_positions = |positions| Changes { positions: Some(positions), ..Changes::default() };
+        let part = old.with(60..100, &of_positions(&far[..40]), 0..64);
+        assert_eq!((part.low, part.high), (Vec3::ZERO, Vec3::splat(20.0)));
+        let whole = old.with(0..64, &of_positions(&far), 0..64);
+        assert_eq!((whole.low, whole.radius, whole.cone), (Vec3::splat(20.0), 0.5, old.cone));
+        let turned = Changes { normals: Some(&[Vec3::NEG_Z]), ..Changes::default() };
+        assert_eq!(old.with(10..11, &turned, 0..64).cone, Cone::All);
+        let tilted = [Vec3::new(0.6, 0.0, 0.8)];
+        let wider = old.with(10..11, &Changes { normals: Some(&tilted), ..Changes::default() }, 0..64).cone;
+        assert!(matches!(wider, Cone::Of(_, cosine) if cosine < 0.84), "{wider:?}");
+    }
+}
