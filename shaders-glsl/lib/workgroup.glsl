@@ -40,9 +40,9 @@ DEFINE_SHUFFLE(vec3, vec3_shuffle)
 DEFINE_SHUFFLE(vec4, vec4_shuffle)
 DEFINE_SHUFFLE(uint, uint_shuffle)
 
-// Bit k is the condition of lane k.
+// Bit k is the condition of lane k, which is false from lane 32 on.
 uint workgroup_ballot(bool condition) {
-    uint bits = uint(condition) << lane;
+    uint bits = uint(condition) << (lane & 31u);
     for (uint k = 0; k < STEPS; k++) bits |= shuffle(bits, lane ^ 1u << k);
     return bits;
 }

@@ -87,6 +87,8 @@ pub struct Program {
     pub constants: Constants,
     /// Domain of its invocations.
     pub domain: Domain,
+    /// Each workgroup is one subgroup.
+    pub is_subgroup: bool,
 }
 
 /// The shaders of a pipeline.
@@ -171,12 +173,12 @@ impl Domain {
 impl Program {
     /// A compute shader.
     pub fn compute(module: &'static Module, domain: Domain) -> Self {
-        Self { stages: Stages::Compute(module), constants: Constants::default(), domain }
+        Self { stages: Stages::Compute(module), constants: Constants::default(), domain, is_subgroup: false }
     }
 
     /// A vertex and a fragment shader.
     pub fn draw(modules: [&'static Module; 2], domain: Domain) -> Self {
-        Self { stages: Stages::Draw(modules), constants: Constants::default(), domain }
+        Self { stages: Stages::Draw(modules), constants: Constants::default(), domain, is_subgroup: false }
     }
 
     /// Adds a specialization constant.

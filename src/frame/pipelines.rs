@@ -150,9 +150,13 @@ impl Pipelines {
             let sets: Vec<&SetLayout> = layouts.iter().map(Arc::as_ref).collect();
             let constants = constants.clone().and(&program.constants);
             let pipeline = match program.stages {
-                Stages::Compute(module) => {
-                    Pipeline::Compute(ComputePipeline::new(device, &sets, module, &constants)?)
-                }
+                Stages::Compute(module) => Pipeline::Compute(ComputePipeline::new(
+                    device,
+                    &sets,
+                    module,
+                    &constants,
+                    program.is_subgroup,
+                )?),
                 Stages::Draw(modules) => Pipeline::Draw(match (&render_pass, &pass.commands) {
                     (Some(into), Commands::Draws(targets)) => {
                         let (topology, depth, blend) = (targets.topology, targets.test, targets.blend);

@@ -87,10 +87,10 @@ pub struct TileWorkgroup {
 }
 
 impl TileWorkgroup {
-    /// The workgroup for devices whose subgroups of this size support shuffles.
-    pub fn of(subgroup_size: u32) -> Self {
-        let fits = (8..=64).contains(&subgroup_size) && subgroup_size.is_power_of_two();
-        if fits { Self { lanes: subgroup_size, subgroups: true } } else { Self::default() }
+    /// The workgroup for devices whose subgroups of this size support shuffles, or otherwise of so many lanes.
+    pub fn of(subgroup_size: u32, shared_lanes: u32) -> Self {
+        let subgroups = (8..=64).contains(&subgroup_size) && subgroup_size.is_power_of_two();
+        Self { lanes: if subgroups { subgroup_size } else { shared_lanes }, subgroups }
     }
 }
 

@@ -35,6 +35,8 @@ mod tests {
             independent_blend: true,
             timestamps: None,
             subgroup_size: 0,
+            subgroup_size_control: false,
+            shared_lanes: 8,
             max_texels: 65_536,
             max_storage_buffer_range: 1 << 20,
             storage_buffer_alignment: 64,

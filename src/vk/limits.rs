@@ -19,12 +19,16 @@ pub struct DeviceLimits {
     pub fragment_writes: Option<bool>,
     /// `false` hides independent blending of colour attachments.
     pub independent_blend: Option<bool>,
+    /// `false` hides the control of subgroup sizes.
+    pub subgroup_size_control: Option<bool>,
     /// `false` hides dynamic rendering in hosts.
     pub dynamic_rendering: Option<bool>,
     /// `false` hides timestamps.
     pub timestamps: Option<bool>,
     /// Upper bound of the subgroup size in which compute shaders pass values on; below 8 they do so by shared memory.
     pub subgroup_size: Option<u32>,
+    /// Invocations of a workgroup that passes values on by shared memory: 8, 16, 32 or 64.
+    pub shared_lanes: Option<u32>,
     /// Upper bound of `maxTexelBufferElements`.
     pub max_texels: Option<u64>,
     /// Upper bound of `maxStorageBufferRange`, bytes.
@@ -46,6 +50,7 @@ impl DeviceLimits {
             int64_atomics: self.int64_atomics != Some(false),
             fragment_writes: self.fragment_writes != Some(false),
             independent_blend: self.independent_blend != Some(false),
+            subgroup_size_control: self.subgroup_size_control != Some(false),
         };
         abilities.and(left)
     }
@@ -65,8 +70,12 @@ pub struct Capabilities {
     pub independent_blend: bool,
     /// Timestamp period, ns, and mask of valid bits; `None` without timestamps.
     pub timestamps: Option<(f32, u64)>,
-    /// Subgroup size of compute shaders, if all subgroups have the same one and can shuffle; otherwise 0.
+    /// Subgroup size of compute shaders that shuffle, of all subgroups or of pipelines that require it; otherwise 0.
     pub subgroup_size: u32,
+    /// Pipelines can require that subgroup size, and full subgroups.
+    pub subgroup_size_control: bool,
+    /// Invocations of a workgroup that passes values on by shared memory.
+    pub shared_lanes: u32,
     /// `maxTexelBufferElements`.
     pub max_texels: u64,
     /// `maxStorageBufferRange`, bytes.
@@ -122,14 +131,17 @@ impl Capabilities {
         let heaps = memory.memory_heaps_as_slice().iter();
         let local = heaps.filter(|heap| heap.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL));
         let memory = local.map(|heap| heap.size).max().unwrap_or(u64::MAX);
-        // SAFETY: by the caller.
-        let subgroup_size = unsafe { subgroup_size(instance, physical) };
         let side = limits
             .max_image_dimension2_d
             .min(limits.max_framebuffer_width)
             .min(limits.max_framebuffer_height);
         let side = side.min(limits.max_viewport_dimensions[0]).min(limits.max_viewport_dimensions[1]);
         let enabled = mask.leave(enabled);
+        // SAFETY: by the caller.
+        let (subgroup_size, controlled) =
+            unsafe { subgroup_size(instance, physical, enabled.subgroup_size_control) };
+        // A subgroup of most GPUs, so that no lanes idle.
+        let shared_lanes = if properties.device_type == vk::PhysicalDeviceType::CPU { 8 } else { 32 };
         let valid_bits = families[family as usize].timestamp_valid_bits;
         let timestamps = valid_bits > 0 && mask.timestamps != Some(false);
         Self {
@@ -141,6 +153,10 @@ impl Capabilities {
             timestamps: timestamps
                 .then_some((limits.timestamp_period, u64::MAX >> (64 - valid_bits.clamp(1, 64)))),
             subgroup_size: subgroup_size.min(mask.subgroup_size.unwrap_or(u32::MAX)),
+            subgroup_size_control: controlled && mask.subgroup_size.is_none_or(|most| subgroup_size <= most),
+            shared_lanes: mask
+                .shared_lanes
+                .map_or(shared_lanes, |lanes| lanes.next_power_of_two().clamp(8, 64)),
             max_texels: u64::from(limits.max_texel_buffer_elements).min(mask.max_texels.unwrap_or(u64::MAX)),
             max_storage_buffer_range: u64::from(limits.max_storage_buffer_range)
                 .min(mask.max_storage_buffer_range.unwrap_or(u64::MAX)),
@@ -160,11 +176,19 @@ impl Capabilities {
     }
 }
 
-/// The size of all subgroups of compute shaders that can shuffle; 0 if they cannot, or are not all of one size.
+/// Subgroup size in a range of sizes that a pipeline requires: a tile of 8 × 8 px has two pixels a lane.
+const REQUIRED_SUBGROUP: u32 = 32;
+
+/// The size of subgroups of compute shaders that can shuffle, and whether pipelines can require it; 0 if they cannot, or are not all of one size
+/// and `controlled` is false.
 ///
 /// # Safety
 /// `physical` is one of the instance's devices, and of version 1.1 at least.
-unsafe fn subgroup_size(instance: &ash::Instance, physical: vk::PhysicalDevice) -> u32 {
+unsafe fn subgroup_size(
+    instance: &ash::Instance,
+    physical: vk::PhysicalDevice,
+    controlled: bool,
+) -> (u32, bool) {
     // SAFETY: by the caller.
     let extensions = unsafe { instance.enumerate_device_extension_properties(physical) }.unwrap_or_default();
     let varies = extensions
@@ -180,6 +204,11 @@ unsafe fn subgroup_size(instance: &ash::Instance, physical: vk::PhysicalDevice) 
     unsafe { instance.get_physical_device_properties2(physical, &mut query) };
     let shuffles = subgroups.supported_operations.contains(vk::SubgroupFeatureFlags::SHUFFLE)
         && subgroups.supported_stages.contains(vk::ShaderStageFlags::COMPUTE);
-    let fixed = !varies || sizes.min_subgroup_size == sizes.max_subgroup_size;
-    if shuffles && fixed { subgroups.subgroup_size } else { 0 }
+    let range = [sizes.min_subgroup_size, sizes.max_subgroup_size];
+    let required = controlled && sizes.required_subgroup_size_stages.contains(vk::ShaderStageFlags::COMPUTE);
+    match (shuffles, varies && range[0] < range[1]) {
+        (true, false) => (subgroups.subgroup_size, required),
+        (true, true) if required => (REQUIRED_SUBGROUP.max(range[0]).min(range[1]), true),
+        _ => (0, false),
+    }
 }

@@ -32,17 +32,22 @@ pub struct DrawPipeline(Arc<Raw>);
 pub type Sets<'a> = [&'a SetLayout];
 
 impl ComputePipeline {
-    /// Creates a pipeline of `module` with these set layouts.
+    /// Creates a pipeline of `module` with these set layouts. If a workgroup `is_subgroup`, of
+    /// [`subgroup_size`](super::Capabilities::subgroup_size), the pipeline requires that where it can.
     pub fn new(
         device: &Arc<Device>,
         sets: &Sets<'_>,
         module: &'static Module,
         constants: &Constants,
+        is_subgroup: bool,
     ) -> Result<Self> {
         let code = Code::from(module).bound(sets)?;
         let push = code.push();
-        let key =
-            PipelineKey { stages: vec![code.specialized(constants)], sets: bindings(sets), push, draw: None };
+        let capabilities = device.capabilities();
+        let required =
+            (is_subgroup && capabilities.subgroup_size_control).then_some(capabilities.subgroup_size);
+        let stage = code.specialized(constants).with_subgroup_size(required);
+        let key = PipelineKey { stages: vec![stage], sets: bindings(sets), push, draw: None };
         device.pipelines.get(key, |key| Raw::compute(device, sets, key)).map(Self)
     }
 

@@ -12,6 +12,8 @@ pub struct Abilities {
     pub fragment_writes: bool,
     /// Colour attachments of one subpass can have different blending and write masks.
     pub independent_blend: bool,
+    /// Pipelines can require a subgroup size, and full subgroups.
+    pub subgroup_size_control: bool,
 }
 
 /// One of the [`Abilities`]: its Vulkan names and its benefit.
@@ -35,7 +37,7 @@ pub const QUEUE: vk::QueueFlags =
     vk::QueueFlags::from_raw(vk::QueueFlags::GRAPHICS.as_raw() | vk::QueueFlags::COMPUTE.as_raw());
 
 /// All optional features.
-pub const ABILITIES: [Ability; 3] = [
+pub const ABILITIES: [Ability; 4] = [
     Ability {
         extension: Some(ash::khr::shader_atomic_int64::NAME),
         features: "shaderInt64, shaderBufferInt64Atomics",
@@ -53,6 +55,12 @@ pub const ABILITIES: [Ability; 3] = [
         features: "independentBlend",
         buys: "subpasses of a host with several colour attachments",
         of: |abilities| abilities.independent_blend,
+    },
+    Ability {
+        extension: Some(ash::ext::subgroup_size_control::NAME),
+        features: "subgroupSizeControl, computeFullSubgroups",
+        buys: "tiles by subgroups where their size varies",
+        of: |abilities| abilities.subgroup_size_control,
     },
 ];
 
@@ -87,6 +95,10 @@ impl Abilities {
         if integers {
             query = query.push_next(&mut features.integers);
         }
+        let sizes = has(ash::ext::subgroup_size_control::NAME);
+        if sizes {
+            query = query.push_next(&mut features.subgroups);
+        }
         // SAFETY: by the caller; each struct is of an extension that the device has.
         unsafe { instance.get_physical_device_features2(physical, &mut query) };
         let core = query.features;
@@ -96,6 +108,9 @@ impl Abilities {
                 && core.shader_int64 == vk::TRUE,
             fragment_writes: core.fragment_stores_and_atomics == vk::TRUE,
             independent_blend: core.independent_blend == vk::TRUE,
+            subgroup_size_control: sizes
+                && features.subgroups.subgroup_size_control == vk::TRUE
+                && features.subgroups.compute_full_subgroups == vk::TRUE,
         }
     }
 
@@ -113,6 +128,9 @@ impl Abilities {
                 .independent_blend(self.independent_blend),
             integers: vk::PhysicalDeviceShaderAtomicInt64Features::default()
                 .shader_buffer_int64_atomics(self.int64_atomics),
+            subgroups: vk::PhysicalDeviceSubgroupSizeControlFeatures::default()
+                .subgroup_size_control(self.subgroup_size_control)
+                .compute_full_subgroups(self.subgroup_size_control),
         }
     }
 
@@ -122,6 +140,7 @@ impl Abilities {
             int64_atomics: self.int64_atomics && other.int64_atomics,
             fragment_writes: self.fragment_writes && other.fragment_writes,
             independent_blend: self.independent_blend && other.independent_blend,
+            subgroup_size_control: self.subgroup_size_control && other.subgroup_size_control,
         }
     }
 }
@@ -132,6 +151,7 @@ pub struct Features {
     /// Features of Vulkan 1.0.
     pub core: vk::PhysicalDeviceFeatures,
     integers: vk::PhysicalDeviceShaderAtomicInt64Features<'static>,
+    subgroups: vk::PhysicalDeviceSubgroupSizeControlFeatures<'static>,
 }
 
 // SAFETY: the chained pointers are read only while the borrow of `chain` lasts, and `chain` renews them.
@@ -141,12 +161,16 @@ impl Features {
     /// Adds the enabled features beyond Vulkan 1.0 to the `pNext` chain of `info`. Structs of extensions that are not enabled are left out,
     /// as Vulkan requires.
     ///
-    /// A host that chains `VkPhysicalDeviceVulkan12Features` sets `shaderBufferInt64Atomics` there by [`Abilities::int64_atomics`] instead:
-    /// Vulkan forbids both.
+    /// A host that chains `VkPhysicalDeviceVulkan12Features` sets `shaderBufferInt64Atomics` there by [`Abilities::int64_atomics`] instead, and
+    /// one that chains `VkPhysicalDeviceVulkan13Features` the two of [`Abilities::subgroup_size_control`]: Vulkan forbids both.
     pub fn chain<'a>(&'a mut self, mut info: vk::DeviceCreateInfo<'a>) -> vk::DeviceCreateInfo<'a> {
         self.integers.p_next = std::ptr::null_mut();
+        self.subgroups.p_next = std::ptr::null_mut();
         if self.integers.shader_buffer_int64_atomics == vk::TRUE {
             info = info.push_next(&mut self.integers);
+        }
+        if self.subgroups.subgroup_size_control == vk::TRUE {
+            info = info.push_next(&mut self.subgroups);
         }
         info
     }

@@ -34,6 +34,8 @@ pub(super) struct ShaderStage {
     words: Cow<'static, [u32]>,
     ids: Vec<u32>,
     values: Vec<u32>,
+    /// Required subgroup size; workgroups have full subgroups.
+    subgroup_size: Option<u32>,
 }
 
 /// Name of a module. Always equal, so that stages compare by their code.
@@ -125,7 +127,7 @@ impl Code {
         let read = |(id, _): &&(u32, u32)| self.module.constants.contains(id);
         let (ids, values) = constants.0.iter().filter(read).copied().unzip();
         let name = Name(self.module.name);
-        ShaderStage { name, stage: self.module.stage, words: self.words, ids, values }
+        ShaderStage { name, stage: self.module.stage, words: self.words, ids, values, subgroup_size: None }
     }
 
     /// Size of the push constants, bytes.
@@ -166,6 +168,11 @@ impl ShaderStage {
         self.name.0
     }
 
+    /// The stage with a required size of subgroups, which are full.
+    pub(super) fn with_subgroup_size(self, subgroup_size: Option<u32>) -> Self {
+        Self { subgroup_size, ..self }
+    }
+
     fn entries(&self) -> Vec<vk::SpecializationMapEntry> {
         let entry = |(id, index): (&u32, u32)| vk::SpecializationMapEntry {
             constant_id: *id,
@@ -191,14 +198,32 @@ pub(super) fn with_infos<R>(
     let entries: Vec<_> = stages.iter().map(ShaderStage::entries).collect();
     let constants: Vec<_> =
         stages.iter().zip(&entries).map(|(stage, entries)| stage.specialization(entries)).collect();
-    let info = |((stage, module), constants): ((&ShaderStage, &ShaderModule<'_>), _)| {
-        vk::PipelineShaderStageCreateInfo::default()
-            .stage(stage.stage)
-            .module(module.raw)
-            .name(c"main")
-            .specialization_info(constants)
-    };
-    let infos: Vec<_> = stages.iter().zip(&modules).zip(&constants).map(info).collect();
+    let mut sizes: Vec<_> = stages
+        .iter()
+        .map(|stage| {
+            vk::PipelineShaderStageRequiredSubgroupSizeCreateInfo::default()
+                .required_subgroup_size(stage.subgroup_size.unwrap_or_default())
+        })
+        .collect();
+    let infos: Vec<_> = stages
+        .iter()
+        .zip(&modules)
+        .zip(&constants)
+        .zip(&mut sizes)
+        .map(|(((stage, module), constants), size)| {
+            let info = vk::PipelineShaderStageCreateInfo::default()
+                .stage(stage.stage)
+                .module(module.raw)
+                .name(c"main")
+                .specialization_info(constants);
+            match stage.subgroup_size {
+                Some(_) => {
+                    info.flags(vk::PipelineShaderStageCreateFlags::REQUIRE_FULL_SUBGROUPS).push_next(size)
+                }
+                None => info,
+            }
+        })
+        .collect();
     Ok(make(&infos))
 }
 

@@ -15,6 +15,8 @@ pub const NARROW: DeviceLimits = DeviceLimits {
     int64_atomics: None,
     fragment_writes: None,
     independent_blend: None,
+    subgroup_size_control: None,
+    shared_lanes: None,
     dynamic_rendering: None,
     timestamps: None,
     storage_buffer_alignment: Some(256),

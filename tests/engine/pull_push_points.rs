@@ -23,6 +23,8 @@ const NO_ATOMICS: DeviceLimits = DeviceLimits {
     blend_float32: None,
     fragment_writes: None,
     independent_blend: None,
+    subgroup_size_control: None,
+    shared_lanes: None,
     dynamic_rendering: None,
     timestamps: None,
     subgroup_size: None,

@@ -1,12 +1,14 @@
 //! Tiles: workgroups of every kind, crowded tiles, dense spots and split passes render the same picture.
 
-use crate::frames::{SIZE, agrees, all_outputs, camera, largest_difference, picture_on, sphere};
+use crate::frames::{SIZE, agrees, all_outputs, camera, largest_difference, sphere};
 use crate::support::gpu::{assert_silent, device, render};
 use glam::Vec3;
 use surfel::frame::Splat;
 use surfel::geometry::{Colours, Surfels};
+use surfel::picture::Picture;
 use surfel::settings::Alpha;
 use surfel::settings::methods::Method;
+use surfel::settings::splatting::{Splatting, Visibility};
 use surfel::verify::scenes::bumpy_sphere;
 use surfel::vk::DeviceLimits;
 use surfel::{Error, Rasterizer, RenderOptions, Renderer, Scene, Settings};
@@ -33,23 +35,40 @@ fn a_picture_may_be_larger_than_a_storage_buffer() {
     assert_silent(&device);
 }
 
+/// Subgroups; shared memory for as many lanes as subgroups of any GPU have; storage buffers.
 #[test]
 fn every_kind_of_tile_workgroup_renders_the_same_picture() {
     let surfels = sphere(5_000);
-    let picture = |limits: DeviceLimits| {
+    let axis = Splatting { visibility: Visibility::Axis, ..Splatting::default() };
+    let frames = [
+        Settings::default(),
+        Settings { alpha: Alpha::Coverage, ..Default::default() },
+        Settings { splatting: axis, ..Default::default() },
+        Method::named("sprites-unfiltered").unwrap().settings(),
+        Method::named("confetti").unwrap().settings(),
+    ];
+    let pictures = |limits: DeviceLimits| -> Option<Vec<Picture>> {
         let device = device(limits)?;
-        let picture = picture_on(&device, &surfels, all_outputs(Rasterizer::Compute));
+        let options = all_outputs(Rasterizer::Compute);
+        let of = |settings| render(&device, &surfels, &camera(SIZE), settings, options);
+        let pictures = frames.iter().map(of).collect();
         assert_silent(&device);
-        Some(picture)
+        Some(pictures)
     };
-    let Some(subgroups) = picture(DeviceLimits::default()) else { return };
-    assert!(agrees(&subgroups, &surfels));
-    // With shared memory, and with storage buffers.
-    for limits in [
-        DeviceLimits { subgroup_size: Some(0), ..Default::default() },
+    let Some(subgroups) = pictures(DeviceLimits::default()) else { return };
+    assert!(agrees(&subgroups[0], &surfels));
+    let shared = [8, 16, 32, 64].map(|lanes| DeviceLimits {
+        subgroup_size: Some(0),
+        shared_lanes: Some(lanes),
+        ..Default::default()
+    });
+    let others = [
         DeviceLimits { max_texels: Some(4 * 4_999), ..Default::default() },
-    ] {
-        assert!(picture(limits).unwrap() == subgroups);
+        DeviceLimits { subgroup_size_control: Some(false), ..Default::default() },
+    ];
+    for limits in shared.into_iter().chain(others) {
+        let name = format!("{limits:?}");
+        assert!(pictures(limits).unwrap() == subgroups, "{name}");
     }
 }
 

@@ -18,7 +18,8 @@ impl Range {
     /// The pass.
     pub fn new(device: &Arc<Device>) -> Result<Self> {
         let layout = SetLayout::of(device, [&resource::SCREEN, &resource::VALUE_RANGE])?;
-        ComputePipeline::new(device, &[&layout], &shaders::RANGE_COMPUTE, &Constants::default()).map(Self)
+        ComputePipeline::new(device, &[&layout], &shaders::RANGE_COMPUTE, &Constants::default(), false)
+            .map(Self)
     }
 
     /// Creates a buffer for a range.

@@ -30,7 +30,8 @@ const LANES: u32 = 44;
 /// Program of a tile pass: one module exchanges values through shared memory, the other by subgroup shuffles.
 fn tiles(variant: &Variant, [shared, subgroups]: [&'static Module; 2]) -> Vec<Program> {
     let module = if variant.workgroup.subgroups { subgroups } else { shared };
-    vec![Program::compute(module, Domain::Tiles).with(LANES, variant.workgroup.lanes)]
+    let program = Program::compute(module, Domain::Tiles).with(LANES, variant.workgroup.lanes);
+    vec![Program { is_subgroup: variant.workgroup.subgroups, ..program }]
 }
 
 #[cfg(test)]

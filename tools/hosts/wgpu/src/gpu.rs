@@ -95,6 +95,7 @@ impl Gpu {
         Abilities {
             int64_atomics: features.contains(INT64_ATOMICS),
             fragment_writes: flags.contains(DownlevelFlags::FRAGMENT_WRITABLE_STORAGE),
+            subgroup_size_control: false,
             independent_blend: flags.contains(DownlevelFlags::INDEPENDENT_BLEND),
         }
     }
