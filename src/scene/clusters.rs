@@ -12,6 +12,11 @@ use std::sync::{Mutex, PoisonError};
 /// Consecutive surfels of a cluster: CLUSTER_SIZE of `lib/cluster.glsl`.
 pub(crate) const CLUSTER: u64 = 64;
 
+/// Bytes of the bounds of so many surfels' clusters.
+pub(super) fn bytes(surfels: u64) -> u64 {
+    surfels.div_ceil(CLUSTER) * size_of::<Cluster>() as u64
+}
+
 /// Bounds of all clusters.
 pub(crate) struct Clusters {
     pub buffer: Buffer,

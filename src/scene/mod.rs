@@ -54,7 +54,7 @@ pub struct Scene {
     two_sided: bool,
     ellipses: Option<Stream>,
     clips: Option<ClipStream>,
-    /// Bounds by which frames cull; absent for surfels in arbitrary order and in buffers of the host.
+    /// Bounds by which frames cull; absent for surfels in arbitrary order and in buffers of the host, and beyond the limits of the device.
     clusters: Option<Clusters>,
     colours: Option<Stream>,
     pub(crate) weights: Option<WeightBuffer>,
@@ -147,7 +147,9 @@ impl Scene {
             uploads.buffer(name, bytes).map(|buffer| Stream::side_by_side(buffer, size))
         };
         let order = Order::of(&surfels.positions);
-        let coherent = order == Order::Coherent && count > 0;
+        // The bounds of all clusters are bound at once.
+        let most = device.capabilities().max_storage_buffer_range;
+        let bounded = order == Order::Coherent && count > 0 && clusters::bytes(count) <= most;
         let scene = Self {
             id: next_id(),
             positions: stream("positions", bytemuck::cast_slice(&surfels.positions), VECTOR)?,
@@ -168,7 +170,7 @@ impl Scene {
                 .as_ref()
                 .map(|clips| ClipStream::new(uploads, clips, &chunks))
                 .transpose()?,
-            clusters: coherent.then(|| Clusters::new(uploads, surfels)).transpose()?,
+            clusters: bounded.then(|| Clusters::new(uploads, surfels)).transpose()?,
             primitives: PrimitiveStreams::new(device, uploads, &parts)?,
             texture: image.map(|image| TextureStream::new(device, uploads, image)).transpose()?,
             materials: MaterialStream::new(device, uploads, &parts)?,
