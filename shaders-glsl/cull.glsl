@@ -47,8 +47,9 @@ vec2 bounds_on(vec3 gradient, float constant, vec3 low, vec3 high) {
 // Whether all splats of discs with centres in the box are beyond the side of the viewport at pixel `side` of an axis; `outward` is −1 for the
 // low side.
 //
-// Around the centre's projection x, at distance z, a splat extends by less than e = reach·f√(1 + x²/f²)/z + margin. A centre that is 2·reach
-// beyond the plane through the eye and the side moved outwards by the margin, with z ≥ 2·reach, has a splat beyond the side.
+// A splat extends by at most reach·f√(1 + t²)/z + margin, px, from the projection f·t of its centre at distance z, where f is the focal length.
+// Let the plane through the eye and the side, moved outwards by the margin, be at t₀. A centre farther than 2·reach beyond it, with
+// z ≥ 2·reach, has t − t₀ > 2·reach·√(1 + t₀²)/z. As √(1 + t²) ≤ √(1 + t₀²) + t − t₀, its splat ends beyond t₀.
 bool is_beyond(uint axis, float outward, float side, float reach, float margin, vec3 low, vec3 high) {
     float moved = side + outward * margin;
     vec3 gradient = view.rows_hi[axis].xyz;
@@ -85,7 +86,8 @@ uint cull_reason(Cluster cluster) {
     float moved = frame.epsilon * radius;
     if (PERSPECTIVE && bounds_on(view.rows_hi[2].xyz, 0.0, low, high).y + moved * length(view.rows_hi[2].xyz) < 0.0) return BEHIND;
     if (CULL_BACK && faces_away(cluster, moved, low, high)) return BACK;
-    // Of the kinds of footprints, perspective ones extend farthest, less than 2 radii at z ≥ 2 radii: rims are at least half as far.
+    // An affine image extends by the radius times largest_stretch; a perspective one, whose nearest point is at z/2 at least, by twice the radius.
+    // A third radius is a margin for rounding.
     return is_outside(3.0 * largest_stretch() * radius + moved, low, high) ? OUTSIDE : DRAWN;
 }
 

@@ -253,11 +253,6 @@ uint surfel_of(uint slot) {
     return UNORDERED ? order[slot] : slot;
 }
 
-// Index of the invocation's splat in the instance's list.
-uint slot_of_invocation() {
-    return surfel_of_invocation();
-}
-
 // Stores the result of surfel i in a slot.
 void store(uint slot, uint i, uint reason, Splat splat) {
     uint index = splat_index(slot);

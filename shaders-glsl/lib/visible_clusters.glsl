@@ -18,8 +18,8 @@ const uint CLUSTER_COLUMNS = 32768;
 uint cluster_instance;
 #define INSTANCE (CLUSTERS ? cluster_instance : chunk.first_instance + gl_WorkGroupID.z)
 
-// Index of the invocation's surfel in the chunk; ~0 in workgroups beyond the list. Sets the instance.
-uint surfel_of_invocation() {
+// Index of the invocation's surfel, or of its splat in the instance's list; ~0 in workgroups beyond the list. Sets the instance.
+uint slot_of_invocation() {
     if (!CLUSTERS) return gl_GlobalInvocationID.x;
     uint index = CLUSTER_COLUMNS * gl_WorkGroupID.y + gl_WorkGroupID.x;
     if (index >= visible_count) return ~0u;

@@ -21,12 +21,12 @@ pub(super) fn bytes(surfels: u64) -> u64 {
 pub(crate) struct Clusters {
     pub buffer: Buffer,
     /// The bounds in the buffer, which updates extend.
-    bounds: Mutex<Vec<Bounds>>,
+    bounds: Mutex<Vec<ClusterBounds>>,
 }
 
 /// Bounds of a cluster's surfels, without those that are certainly invalid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Bounds {
+struct ClusterBounds {
     low: Vec3,
     high: Vec3,
     radius: f32,
@@ -63,9 +63,9 @@ impl Clusters {
             ..Changes::default()
         };
         let bounds: Vec<_> = (0..count.div_ceil(CLUSTER))
-            .map(|index| Bounds::NONE.with(0..count, &all, range(index, count)))
+            .map(|index| ClusterBounds::NONE.with(0..count, &all, range(index, count)))
             .collect();
-        let words: Vec<_> = bounds.iter().map(Bounds::words).collect();
+        let words: Vec<_> = bounds.iter().map(ClusterBounds::words).collect();
         let buffer = uploads.buffer("clusters", bytemuck::cast_slice(&words))?;
         Ok(Self { buffer, bounds: Mutex::new(bounds) })
     }
@@ -90,7 +90,8 @@ impl Clusters {
             let known = &mut bounds[index as usize];
             *known = known.with(changed.clone(), changes, range(index, count));
         }
-        let words: Vec<_> = bounds[first as usize..indices.end as usize].iter().map(Bounds::words).collect();
+        let words: Vec<_> =
+            bounds[first as usize..indices.end as usize].iter().map(ClusterBounds::words).collect();
         uploads.write(&self.buffer, first * size_of::<Cluster>() as u64, bytemuck::cast_slice(&words))
     }
 }
@@ -100,7 +101,7 @@ fn range(index: u64, count: u64) -> Range<u64> {
     index * CLUSTER..((index + 1) * CLUSTER).min(count)
 }
 
-impl Bounds {
+impl ClusterBounds {
     const NONE: Self = Self {
         low: Vec3::INFINITY,
         high: Vec3::NEG_INFINITY,
@@ -186,7 +187,7 @@ mod tests {
         Surfels { normals, radii: vec![0.5; 100], positions, ..Surfels::default() }
     }
 
-    fn bounds(surfels: &Surfels, two_sided: Option<&[bool]>) -> Bounds {
+    fn bounds(surfels: &Surfels, two_sided: Option<&[bool]>) -> ClusterBounds {
         let all = Changes {
             positions: Some(&surfels.positions),
             normals: Some(&surfels.normals),
@@ -194,7 +195,7 @@ mod tests {
             two_sided,
             ..Changes::default()
         };
-        Bounds::NONE.with(0..100, &all, 0..64)
+        ClusterBounds::NONE.with(0..100, &all, 0..64)
     }
 
     #[test]

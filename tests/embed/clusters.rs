@@ -111,6 +111,12 @@ fn unbounded(device: &Arc<Device>, surfels: &Surfels) -> (Scene, RawBuffer) {
     (scene, buffer)
 }
 
+/// Number of drawn splats among those that are read back.
+fn read_drawn(renderer: &Renderer) -> u32 {
+    let splats = renderer.read_splats().unwrap();
+    splats.iter().flatten().map(|splat| u32::from(splat.anchor != 0)).sum()
+}
+
 /// Asserts that both reports have the same numbers of surfels by reason.
 fn assert_same_counts(found: &FrameReport, expected: &FrameReport, name: &str) {
     let numbers = |report: &FrameReport| {
@@ -143,6 +149,9 @@ fn culled_clusters_do_not_change_the_picture() {
                     assert!(found == expected, "{name}");
                     assert_same_counts(&report, &whole, &name);
                     assert_eq!(whole.culled_in_clusters, 0);
+                    if settings.pull_push.is_none() {
+                        assert_eq!(read_drawn(&renderers[0]), report.counts.unwrap().drawn, "{name}");
+                    }
                     culled += u64::from(report.culled_in_clusters);
                     covered += found.colour.iter().filter(|colour| colour[3] > 0.0).count();
                 }
