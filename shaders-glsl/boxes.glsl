@@ -24,9 +24,9 @@ layout(push_constant) uniform Level {
     uint clusters;    // first box of the level of clusters
 } level;
 
-// Whether the node is that of a culled cluster or below one.
+// Whether the node is that of a culled cluster or below one. Padding has no cluster.
 bool is_culled(uint i) {
-    if (!CLUSTERS || level.number > CLUSTER_LEVEL) return false;
+    if (!CLUSTERS || level.number > CLUSTER_LEVEL || FAN_OUT * i >= level.finer_count) return false;
     uint cluster = i >> (level.number == CLUSTER_LEVEL ? 0 : 3);
     return load_box(level.clusters + cluster).w == CULLED_CLUSTER;
 }

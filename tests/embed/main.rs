@@ -14,6 +14,7 @@ mod hosts;
 mod inputs;
 mod instances;
 mod live;
+mod memory;
 mod native;
 mod native_depth;
 mod native_live;

@@ -37,7 +37,10 @@ pub struct Rig {
 
 impl Rig {
     pub fn new(host: &Host, rasterizer: Option<Rasterizer>, limits: DeviceLimits) -> Self {
-        let device = host.external_device_within(limits, None).unwrap();
+        Self::on(host, host.external_device_within(limits, None).unwrap(), rasterizer)
+    }
+
+    pub fn on(host: &Host, device: Arc<Device>, rasterizer: Option<Rasterizer>) -> Self {
         let frame = Frame::new(host, KIND, SIZE).unwrap();
         let options = Options { frames_in_flight: 8, rasterizer, ..Options::new(frame.target()) };
         // SAFETY: the target is the frame's.
