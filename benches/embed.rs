@@ -165,7 +165,7 @@ impl Composited {
         let frame = Frame::new(uploaded.host, kind, [SIDE; 2])?;
         let mesh = Mesh::new(uploaded.host, &uploaded.corners(wall), frame.mesh_target())?;
         let options =
-            Options { frames_in_flight: 1, rasterizer: Some(rasterizer), ..Options::new(frame.target()) };
+            Options { frames_in_flight: 1, rasterizer: rasterizer.into(), ..Options::new(frame.target()) };
         // SAFETY: the target belongs to the frame, which is destroyed after the renderer.
         let renderer = unsafe { embed::Renderer::new(&uploaded.device, options)? };
         Ok(Self { frame, mesh, renderer })

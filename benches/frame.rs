@@ -74,6 +74,6 @@ fn framing(surfels: &Surfels) -> Camera {
 
 /// `None`, with a message, if the device does not support it.
 fn renderer(device: &Arc<Device>, rasterizer: Rasterizer) -> Option<Renderer> {
-    let options = RenderOptions { size: [SIDE, SIDE], rasterizer: Some(rasterizer), ..Default::default() };
+    let options = RenderOptions { size: [SIDE, SIDE], rasterizer: rasterizer.into(), ..Default::default() };
     Renderer::new(device, options).map_err(|error| eprintln!("SKIPPED: {error}")).ok()
 }

@@ -140,7 +140,7 @@ impl Stand<'_> {
     ) -> Result<()> {
         let options = Options {
             frames_in_flight: 1,
-            rasterizer: Some(rasterizer),
+            rasterizer: rasterizer.into(),
             ..Options::new(self.frame.target())
         };
         let mut renderers = Vec::new();

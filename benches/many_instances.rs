@@ -52,7 +52,7 @@ fn measure<'a>(
 ) -> Result<()> {
     let camera = Camera::look_at(DVec3::new(0.0, 0.0, 60.0), DVec3::ZERO, DVec3::Y, 0.9, 1.0, 1.0)?;
     let options =
-        RenderOptions { size: SIZE, rasterizer: Some(rasterizer), profile: true, ..Default::default() };
+        RenderOptions { size: SIZE, rasterizer: rasterizer.into(), profile: true, ..Default::default() };
     let mut renderer = Renderer::new(device, options)?;
     let render = |renderer: &mut Renderer| renderer.render(scenes(), &camera, &Settings::default());
     let before = device.usage().allocations;

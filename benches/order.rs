@@ -73,7 +73,7 @@ impl Frames {
     fn new(device: &Arc<Device>, scene: Scene) -> Result<Self> {
         let options = RenderOptions {
             size: SIZE,
-            rasterizer: Some(Rasterizer::Compute),
+            rasterizer: Rasterizer::Compute.into(),
             profile: true,
             ..Default::default()
         };

@@ -71,7 +71,7 @@ impl Stand<'_> {
     fn measure(&self, settings: &Settings, rasterizer: Rasterizer) -> Result<Vec<[u64; 2]>> {
         let options = Options {
             frames_in_flight: 1,
-            rasterizer: Some(rasterizer),
+            rasterizer: rasterizer.into(),
             ..Options::new(self.frame.target())
         };
         // SAFETY: the target belongs to the frame, which outlives the renderer.

@@ -76,4 +76,4 @@ pub use glam;
 pub use picture::Picture;
 pub use progress::Progress;
 pub use scene::{Instance, Instances, Scene};
-pub use settings::{Outputs, Precision, Rasterizer, Settings};
+pub use settings::{Outputs, Precision, Rasterizer, RasterizerChoice, RasterizerReason, Settings};

@@ -8,7 +8,7 @@ use crate::settings::Settings;
 use crate::settings::methods::Method;
 use crate::verify::baseline::{self, Baseline, Kind};
 use crate::vk::{Device, PassTime};
-use crate::{Outputs, Precision, Rasterizer, RenderOptions, Renderer, Scene};
+use crate::{Outputs, Precision, Rasterizer, RasterizerChoice, RenderOptions, Renderer, Scene};
 use std::sync::Arc;
 
 /// A way to render.
@@ -16,7 +16,7 @@ use std::sync::Arc;
 pub enum Engine {
     /// Splats on a Vulkan device, by the method that the settings choose.
     Splatting {
-        /// Rasterizer of the splats; the faster one on the device if `None`.
+        /// Rasterizer of the splats; chosen as without options if `None`.
         rasterizer: Option<Rasterizer>,
         /// Width of the sums.
         precision: Precision,
@@ -103,7 +103,7 @@ impl DeviceEngine {
         device: &Arc<Device>,
         parts: impl Into<Parts<'a>>,
         size: [u32; 2],
-        rasterizer: Option<Rasterizer>,
+        rasterizer: RasterizerChoice,
         precision: Precision,
     ) -> Result<Self> {
         let colour_only = RenderOptions { size, rasterizer, precision, profile: true, ..Default::default() };

@@ -12,7 +12,7 @@ use crate::frame::times::Statistics;
 use crate::geometry::{Camera, Model, Surfels};
 use crate::picture::Picture;
 use crate::settings::splatting::Normalization;
-use crate::settings::{Choice, Settings, Shading};
+use crate::settings::{Choice, RasterizerChoice, Settings, Shading};
 use crate::verify::metrics::flicker::Flicker;
 use crate::verify::metrics::{self, Pair, colour};
 use crate::verify::reference::{self, Expected, Tolerance};
@@ -35,6 +35,8 @@ const STEP: f64 = 0.37;
 pub struct Options {
     /// The device; plans that need one are refused without it.
     pub device: Option<Arc<Device>>,
+    /// Choice of the rasterizer of plans that do not name one.
+    pub rasterizer: RasterizerChoice,
     /// Folder that caches exact pictures.
     pub cache: Option<PathBuf>,
     /// Precision of exact pictures.
@@ -194,6 +196,7 @@ impl Runner {
     fn load(&self, engine: Engine, model: &Model, size: [u32; 2]) -> Result<Box<dyn LoadedEngine>> {
         match engine {
             Engine::Splatting { rasterizer, precision } => {
+                let rasterizer = rasterizer.map_or(self.options.rasterizer, RasterizerChoice::Require);
                 Ok(Box::new(DeviceEngine::new(self.device()?, model, size, rasterizer, precision)?))
             }
             Engine::Baseline(kind) => Ok(Box::new(CpuEngine::new(&model.surfels, size, kind)?)),

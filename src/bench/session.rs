@@ -6,7 +6,7 @@ use super::suites::{Suite, UserInputs};
 use super::{code, hard};
 use crate::error::{Error, Result};
 use crate::progress::Progress;
-use crate::settings::Choice;
+use crate::settings::{Choice, RasterizerChoice};
 use crate::vk::Device;
 use jiff::Timestamp;
 use std::path::PathBuf;
@@ -25,6 +25,8 @@ pub struct SessionOptions {
     pub inputs: UserInputs,
     /// The device; plans that need one are refused without it.
     pub device: Option<Arc<Device>>,
+    /// Choice of the rasterizer of plans that do not name one.
+    pub rasterizer: RasterizerChoice,
     /// Whether the validation layers are active.
     pub validated: bool,
     /// Folder that caches exact pictures.
@@ -44,6 +46,7 @@ pub fn measure(options: &SessionOptions, progress: &dyn Progress) -> (Session, R
     let mut ended = options.suites.iter().try_for_each(|suite| {
         let of_suite = Options {
             device: options.device.clone(),
+            rasterizer: options.rasterizer,
             cache: options.cache.clone(),
             truth: suite.truth(),
             effort: suite.effort(),

@@ -2,7 +2,7 @@
 
 use super::args::Bench;
 use super::files::{self, cache_folder, read_json};
-use super::{progress, vulkan};
+use super::{progress, rasterizers, vulkan};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -15,7 +15,7 @@ use surfel::formats::atomic;
 use surfel::load::scene;
 use surfel::settings::Choice;
 use surfel::vk::Device;
-use surfel::{Error, Progress, Result};
+use surfel::{Error, Progress, RasterizerChoice, Result};
 
 /// Measures, and writes the results. Earlier results and output paths are checked first.
 pub fn run(args: &Bench) -> Result<()> {
@@ -153,7 +153,11 @@ fn device(args: &Bench) -> Result<Option<Arc<Device>>> {
 
 /// What the options ask to measure.
 fn wanted(args: &Bench, suites: Vec<Suite>, progress: &dyn Progress) -> Result<SessionOptions> {
+    let device = device(args)?;
     Ok(SessionOptions {
+        rasterizer: device
+            .as_ref()
+            .map_or(RasterizerChoice::Automatic, |device| rasterizers::choice(None, device)),
         command: command(args, &suites),
         suites,
         inputs: UserInputs {
@@ -165,7 +169,7 @@ fn wanted(args: &Bench, suites: Vec<Suite>, progress: &dyn Progress) -> Result<S
             points: args.points.clone(),
             size: args.size.unwrap_or(UserInputs::default().size),
         },
-        device: device(args)?,
+        device,
         validated: args.device.validate,
         cache: cache_folder().filter(|_| !args.no_cache).map(|folder| folder.join("truth")),
     })

@@ -20,6 +20,7 @@ mod needs;
 #[cfg(feature = "metrics")]
 mod number;
 mod progress;
+mod rasterizers;
 mod reference;
 mod render;
 mod report;
@@ -59,7 +60,8 @@ pub fn run() -> ExitCode {
         Command::Truth(args) => truth::run(&args),
         #[cfg(feature = "bench")]
         Command::Bench(args) => bench::run(&args),
-        Command::Devices(Listing { json }) => devices::run(json),
+        Command::Devices(args) if args.measure => rasterizers::measure(args.device.as_deref(), args.json),
+        Command::Devices(args) => devices::run(args.json),
         Command::Methods(args) => methods::run(&args),
         Command::Scenes(Listing { json }) => scenes::run(json),
         Command::Completions(args) => manual::completions(&args),

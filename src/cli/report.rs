@@ -11,7 +11,7 @@ use surfel::load::{Coloured, LoadedModel};
 use surfel::settings::splatting::Splatting;
 use surfel::settings::{Choice, DirectionalLight, Lighting};
 use surfel::vk::{DeviceDescription, Usage};
-use surfel::{Error, Precision, Rasterizer, Result, Settings, SplatCounts, TargetInfo};
+use surfel::{Error, Precision, Rasterizer, RasterizerReason, Result, Settings, SplatCounts, TargetInfo};
 
 /// The device and its resources.
 pub struct Gpu {
@@ -21,6 +21,8 @@ pub struct Gpu {
     pub precision: Precision,
     /// The rasterizer.
     pub rasterizer: Option<Rasterizer>,
+    /// The reason for it.
+    pub rasterizer_reason: Option<RasterizerReason>,
     /// Every render target.
     pub targets: Vec<TargetInfo>,
     /// Memory of the surfels, bytes.
@@ -78,6 +80,8 @@ impl Report {
         put("device", gpu.map(|gpu| device(&gpu.description)));
         put("precision", gpu.map(|gpu| json!(gpu.precision.name())));
         put("rasterizer", gpu.map(|gpu| json!(gpu.rasterizer.map(Choice::name))));
+        let reason = gpu.map(|gpu| gpu.rasterizer_reason.map(<&str>::from));
+        put("rasterizer_reason", reason.map(|reason| json!(reason)));
         put("targets", gpu.map(|gpu| gpu.targets.iter().map(target).collect()));
         put("target_bytes", gpu.map(|gpu| json!(gpu.targets.iter().map(|target| target.bytes).sum::<u64>())));
         put("scene_bytes", gpu.map(|gpu| json!(gpu.scene_bytes)));

@@ -3,7 +3,7 @@
 use super::args::{self, View};
 use super::files::config_folder;
 use super::progress::{self, Silent};
-use super::{camera, render, vulkan};
+use super::{camera, rasterizers, render, vulkan};
 use crate::viewer::{self, Loaded, SceneInfo};
 use glam::DVec3;
 use std::ffi::OsString;
@@ -36,6 +36,7 @@ pub fn run(args: View) -> Result<()> {
         size: args.size,
         device: vulkan::options(&args.device)?,
         rasterizer: args.rasterizer,
+        faster: rasterizers::read(),
         up,
         budget: args.budget,
         fov_y_deg: args.camera.fov.unwrap_or(camera::FOV),

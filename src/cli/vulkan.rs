@@ -4,7 +4,7 @@ use super::args::{Backend, DeviceArgs};
 use super::files::{cache_folder, read_json};
 use super::render::{Outcome, Task};
 use super::report::{Gpu, HalfError};
-use super::turntable;
+use super::{rasterizers, turntable};
 use std::sync::Arc;
 use std::time::Instant;
 use surfel::embed::Measured;
@@ -22,18 +22,22 @@ pub fn options(args: &DeviceArgs) -> Result<DeviceOptions> {
         select: args.device.clone(),
         validate: args.validate,
         limits: args.device_limits.as_deref().map_or(Ok(DeviceLimits::default()), read_json)?,
-        pipeline_cache: cache_folder(),
-        ..Default::default()
+        ..cached()
     })
 }
 
+/// Options of a device that keeps compiled pipelines in the cache folder.
+pub fn cached() -> DeviceOptions {
+    DeviceOptions { pipeline_cache: cache_folder(), ..Default::default() }
+}
+
 /// Options to render `task`; `profile` times the passes.
-fn render_options(task: &Task<'_>, backend: &Backend, profile: bool) -> RenderOptions {
+fn render_options(device: &Device, task: &Task<'_>, backend: &Backend, profile: bool) -> RenderOptions {
     RenderOptions {
         size: task.size,
         outputs: task.layers.with_mask(&task.settings),
         precision: if backend.half { Precision::Half } else { Precision::Full },
-        rasterizer: backend.rasterizer,
+        rasterizer: rasterizers::choice(backend.rasterizer, device),
         profile,
         ..Default::default()
     }
@@ -47,7 +51,7 @@ pub fn render(
     wanted: Measured,
 ) -> Result<Outcome> {
     let device = Device::open(options)?;
-    let options = render_options(task, backend, wanted.times);
+    let options = render_options(&device, task, backend, wanted.times);
     let mut renderer = Renderer::new(&device, options)?;
     let scene = Scene::upload(&device, task.scene)?;
     let mut times = Times::default();
@@ -126,7 +130,7 @@ pub fn turn(
     mut save: impl FnMut(usize, Picture) -> Result<()>,
 ) -> Result<()> {
     let device = Device::open(options)?;
-    let options = render_options(task, backend, false);
+    let options = render_options(&device, task, backend, false);
     let mut renderer = Renderer::new(&device, options)?;
     let scene = Scene::upload(&device, task.scene)?;
     for (number, camera) in cameras.iter().enumerate() {
@@ -170,6 +174,7 @@ fn gpu(device: &Arc<Device>, renderer: &Renderer, scene: &Scene) -> Gpu {
         description: device.description().clone(),
         precision: renderer.precision(),
         rasterizer: renderer.rasterizer(),
+        rasterizer_reason: renderer.rasterizer_reason(),
         targets: renderer.targets(),
         scene_bytes: scene.bytes(),
         splat_bytes: renderer.splat_bytes(),

@@ -116,7 +116,7 @@ use crate::frame::variant::Variant;
 use crate::frame::{FrameReport, RenderOptions};
 use crate::scene::instance::Instances;
 use crate::settings::Settings;
-use crate::settings::{Outputs, Precision, Rasterizer};
+use crate::settings::{Outputs, Precision, RasterizerChoice};
 use crate::vk::shaders::layout;
 use crate::vk::{DescriptorSet, Device, Draws, HostPass, Recorder};
 use ash::vk;
@@ -135,15 +135,21 @@ pub struct Options {
     /// See [`RenderOptions::precision`].
     pub precision: Precision,
     /// See [`RenderOptions::rasterizer`].
-    pub rasterizer: Option<Rasterizer>,
+    pub rasterizer: RasterizerChoice,
     /// See [`RenderOptions::most_splats`].
     pub most_splats: Option<u32>,
 }
 
 impl Options {
-    /// Two frames in flight, full precision, the faster rasterizer, no bound on the work of a frame.
+    /// Two frames in flight, full precision, the rasterizer chosen automatically, no bound on the work of a frame.
     pub fn new(target: Target) -> Self {
-        Self { target, frames_in_flight: 2, precision: Precision::Full, rasterizer: None, most_splats: None }
+        Self {
+            target,
+            frames_in_flight: 2,
+            precision: Precision::Full,
+            rasterizer: RasterizerChoice::Automatic,
+            most_splats: None,
+        }
     }
 }
 

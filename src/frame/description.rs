@@ -9,13 +9,15 @@ use super::variant::{SceneVariant, Variant};
 use crate::error::{Error, Result};
 use crate::geometry::Camera;
 use crate::scene::instance::Placed;
-use crate::settings::Settings;
+use crate::settings::{RasterizerReason, Settings};
 use crate::vk::Device;
 
 /// Description of a frame.
 pub struct Description {
     pub uniforms: Uniforms,
     pub variant: Variant,
+    /// Reason for its rasterizer.
+    pub reason: RasterizerReason,
     /// Variants of its scenes.
     pub scenes: Vec<SceneVariant>,
     /// Average splats per covered tile.
@@ -43,7 +45,7 @@ pub fn describe(
     // With a bound on the work of a tile there are no slices.
     let sliced = options.most_splats.is_none() && slicing.needs_slices(scenes, splats_per_tile);
     let fit = Fit::new(device, options, workgroup.is_some(), sliced);
-    let rasterizer = rasterizer_of(device, options, settings, scenes, fit)?;
+    let (rasterizer, reason) = rasterizer_of(device, options, settings, scenes, fit)?;
     let perspective = camera.projection()?.perspective;
     let precision = match settings.pull_push {
         Some(_) => options.precision,
@@ -56,7 +58,7 @@ pub fn describe(
     check_lookups(&variant, scenes)?;
     let instanced = !uniforms.instances.is_empty();
     let scenes = streams.into_iter().map(|streams| SceneVariant::new(variant, streams, instanced)).collect();
-    Ok(Description { uniforms, variant, scenes, splats_per_tile })
+    Ok(Description { uniforms, variant, reason, scenes, splats_per_tile })
 }
 
 /// Rejects several scenes if one has a texture or materials: pixels look them up in one table.

@@ -29,6 +29,7 @@
 
 mod compact;
 pub(crate) mod description;
+pub mod faster;
 mod methods;
 pub(crate) mod pass;
 pub(crate) mod passes;

@@ -10,7 +10,7 @@ use crate::picture::Picture;
 use crate::scene::Scene;
 use crate::scene::instance::Instances;
 use crate::settings::Settings;
-use crate::settings::{Outputs, Precision, Rasterizer};
+use crate::settings::{Outputs, Precision, Rasterizer, RasterizerChoice, RasterizerReason};
 use crate::vk::shaders::layout::Counts;
 pub use crate::vk::shaders::layout::Splat;
 use crate::vk::{Commands, Device, PassTime};
@@ -27,8 +27,8 @@ pub struct RenderOptions {
     /// Float width of the weighted sums, or of the samples of pull–push. Devices that cannot blend 32-bit floats use 16 for sums: see
     /// [`Renderer::precision`].
     pub precision: Precision,
-    /// Rasterizer; `None` selects the faster on the device.
-    pub rasterizer: Option<Rasterizer>,
+    /// Rasterizer.
+    pub rasterizer: RasterizerChoice,
     /// Time the passes; see also [`Renderer::profile`].
     pub profile: bool,
     /// Count the splats by cull reason.
@@ -159,6 +159,11 @@ impl Renderer {
     /// Rasterizer of the last frame.
     pub fn rasterizer(&self) -> Option<Rasterizer> {
         self.frame.current().map(|current| current.variant.rasterizer)
+    }
+
+    /// Reason for the rasterizer of the last frame.
+    pub fn rasterizer_reason(&self) -> Option<RasterizerReason> {
+        self.frame.rasterizer_reason()
     }
 
     /// Memory of splats, attributes and counters of the last frame, bytes.

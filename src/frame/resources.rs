@@ -18,9 +18,8 @@ use crate::error::Result;
 use crate::geometry::Camera;
 use crate::scene::Scene;
 use crate::scene::instance::Placed;
-use crate::settings::Precision;
-use crate::settings::Settings;
 use crate::settings::splatting::Visibility;
+use crate::settings::{Precision, RasterizerReason, Settings};
 use crate::vk::{Access, Buffer, Device, Recorder};
 use std::any::Any;
 use std::sync::Arc;
@@ -29,6 +28,8 @@ use std::sync::Arc;
 pub struct FrameResources {
     // Fields drop in this order: views before their buffers.
     current: Option<VariantResources>,
+    /// Reason for its rasterizer.
+    reason: Option<RasterizerReason>,
     /// Resources of the previous variant: alternating between two, as progressive rendering does, creates nothing.
     previous: Option<VariantResources>,
     scenes: SceneCache,
@@ -78,6 +79,7 @@ impl FrameResources {
         check_size(device, options.size)?;
         Ok(Self {
             current: None,
+            reason: None,
             previous: None,
             scenes: SceneCache::default(),
             placements: Vec::new(),
@@ -107,6 +109,11 @@ impl FrameResources {
     /// Resources of the last frame's variant.
     pub fn current(&self) -> Option<&VariantResources> {
         self.current.as_ref()
+    }
+
+    /// Reason for the rasterizer of the last frame.
+    pub fn rasterizer_reason(&self) -> Option<RasterizerReason> {
+        self.reason
     }
 
     /// Resources of the last frame's scenes, each once.
@@ -207,6 +214,7 @@ impl FrameResources {
     ) -> Result<()> {
         self.make_scenes(scenes, frame)?;
         self.make_current(scenes, frame.variant, size)?;
+        self.reason = Some(frame.reason);
         self.make_passes(&frame.scenes, bindings)
     }
 

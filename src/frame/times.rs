@@ -26,6 +26,46 @@ pub struct Statistics {
     pub max: f64,
 }
 
+/// Median with its 95 % confidence interval.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Interval {
+    /// Median.
+    pub median: f64,
+    /// Least value of the interval.
+    pub low: f64,
+    /// Greatest value of the interval.
+    pub high: f64,
+}
+
+impl Interval {
+    /// Interval between two of the values, by the sign test: whatever their distribution, the median is outside with a probability of at most
+    /// 5 %. Fewer than six values do not suffice: it is then from the least to the greatest. `None` without values.
+    pub fn of(values: &[f64]) -> Option<Self> {
+        let mut sorted = values.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let median = Statistics::of(&sorted)?.median;
+        let out = values_outside(sorted.len());
+        Some(Self { median, low: sorted[out], high: sorted[sorted.len() - 1 - out] })
+    }
+}
+
+/// The most of `count` sorted values, on each side, that may lie outside of the interval: at most so many are below the median with a
+/// probability of at most 2.5 %.
+fn values_outside(count: usize) -> usize {
+    // Logarithm of the probability that so many are below, by the binomial distribution with p = 1/2.
+    let mut logarithm = count as f64 * 0.5f64.ln();
+    let mut sum = 0.0;
+    for below in 0..count / 2 {
+        sum += logarithm.exp();
+        if sum > 0.025 {
+            return below.saturating_sub(1);
+        }
+        logarithm += ((count - below) as f64 / (below + 1) as f64).ln();
+    }
+    0
+}
+
 impl Times {
     /// Adds a frame: the time that its caller waited, and its passes on the GPU.
     ///
@@ -105,6 +145,22 @@ mod tests {
         assert_eq!(times(&[7]).frame().map(|frame| frame.max), Some(7.0));
         assert_eq!(times(&[100, 1, 2]).frame().map(|frame| frame.median), Some(1.5));
         assert_eq!(times(&[]).frame(), None);
+    }
+
+    #[test]
+    fn intervals_of_medians_are_those_of_the_sign_test() {
+        let of = |count: i32| Interval::of(&(1..=count).rev().map(f64::from).collect::<Vec<_>>());
+        assert_eq!(of(0), None);
+        // Tabulated ranks (Conover, Practical Nonparametric Statistics, table A3).
+        for (count, low) in
+            [(1, 1.0), (5, 1.0), (6, 1.0), (8, 1.0), (9, 2.0), (10, 2.0), (12, 3.0), (20, 6.0), (30, 10.0)]
+        {
+            let high = f64::from(count + 1) - low;
+            let expected = Interval { median: 0.5 * f64::from(count + 1), low, high };
+            assert_eq!(of(count), Some(expected));
+        }
+        let many = of(5000).unwrap();
+        assert!(many.low > 2400.0 && many.low < 2500.0, "{many:?}");
     }
 
     #[test]

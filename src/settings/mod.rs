@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::settings::pull_push::PullPush;
 use crate::settings::splatting::{Filter, Splatting};
 pub use choice::Choice;
-pub use outputs::{Outputs, Precision, Rasterizer};
+pub use outputs::{Outputs, Precision, Rasterizer, RasterizerChoice, RasterizerReason};
 use std::ops::RangeInclusive;
 
 /// Settings of a frame beside camera and scene.

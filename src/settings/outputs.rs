@@ -19,10 +19,51 @@ use super::{Settings, Shading};
 pub enum Rasterizer {
     /// Raster path: triangles or points with depth test and blending; works on every device.
     Draw,
-    /// Compute path: faster on devices with slow fragment processing.
+    /// Compute path: each tile of 8 × 8 px gathers its splats.
     ///
-    /// It needs atomic addition of floats and atomic minima of 64-bit integers; sums are 32-bit floats only.
+    /// Sums are 32-bit floats only, and all splats fit a storage buffer. Points of pull–push need atomic minima of 64-bit integers.
     Compute,
+}
+
+/// Choice of the rasterizer of a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum RasterizerChoice {
+    /// The compute path, if the device supports the frame on it.
+    #[default]
+    Automatic,
+    /// For splats this one, if the device supports the frame on it; points of pull–push as by [`Self::Automatic`]. For the faster one on the
+    /// device, see [`FasterRasterizers`](crate::frame::faster::FasterRasterizers).
+    Prefer(Rasterizer),
+    /// This one: frames that the device does not support on it are rejected.
+    Require(Rasterizer),
+}
+
+/// A required rasterizer, or an automatic choice.
+impl From<Option<Rasterizer>> for RasterizerChoice {
+    fn from(required: Option<Rasterizer>) -> Self {
+        required.map_or(Self::Automatic, Self::Require)
+    }
+}
+
+/// A required rasterizer.
+impl From<Rasterizer> for RasterizerChoice {
+    fn from(required: Rasterizer) -> Self {
+        Self::Require(required)
+    }
+}
+
+/// Reason for which a frame has its rasterizer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, strum::EnumMessage, strum::IntoStaticStr)]
+#[strum(serialize_all = "kebab-case")]
+pub enum RasterizerReason {
+    /// Required by the options.
+    Required,
+    /// Preferred: the faster one on this device and driver.
+    Faster,
+    /// The only one that the device supports for the frame.
+    OnlySupported,
+    /// The default.
+    Default,
 }
 
 /// Images that a frame returns beside the colours.

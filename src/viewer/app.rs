@@ -126,6 +126,7 @@ impl ApplicationHandler<AppEvent> for App {
                 // The first scene is framed in what the panel leaves of the window.
                 self.lay_out();
                 self.loader.use_device(&device);
+                self.state.rasterizer = self.options.rasterizer_on(&device);
             }
             Err(error) => self.fail(events, error),
         }

@@ -5,7 +5,7 @@ use surfel::embed::OffscreenView;
 use surfel::geometry::{Camera, ValueRange};
 use surfel::settings::Shading;
 use surfel::vk::{Presented, Presenter};
-use surfel::{FrameReport, Rasterizer, Result, Scene, Settings};
+use surfel::{FrameReport, RasterizerChoice, Result, Scene, Settings};
 
 /// An offscreen view, and the request that it shows.
 pub struct CachedView {
@@ -48,7 +48,7 @@ impl ViewRequest {
 
 impl CachedView {
     /// An empty view of a window.
-    pub fn new(presenter: &Presenter, rasterizer: Option<Rasterizer>) -> Result<Self> {
+    pub fn new(presenter: &Presenter, rasterizer: RasterizerChoice) -> Result<Self> {
         Ok(Self { view: OffscreenView::new(presenter, rasterizer)?, drawn: None, created: false })
     }
 

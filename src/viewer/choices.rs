@@ -6,7 +6,7 @@ use super::source::Source;
 use std::sync::Arc;
 use surfel::geometry::Camera;
 use surfel::settings::methods::Method;
-use surfel::{Rasterizer, Result, Scene, Settings};
+use surfel::{RasterizerChoice, Result, Scene, Settings};
 
 /// What the panels let the user choose, and what that depends on.
 pub struct Choices<'a> {
@@ -23,7 +23,7 @@ pub struct Choices<'a> {
     pub camera: Option<Result<Camera>>,
     /// Width and height of the window's picture, px.
     pub size: [u32; 2],
-    pub rasterizer: Option<Rasterizer>,
+    pub rasterizer: RasterizerChoice,
     pub method_settings: &'a MethodSettings,
 }
 

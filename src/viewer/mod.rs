@@ -46,10 +46,11 @@ pub use screenshots::SaveFolder;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::Arc;
+use surfel::frame::faster::FasterRasterizers;
 use surfel::geometry::{Bounds, ColourMap, Model, Pose, ValueRange};
 use surfel::settings::methods::Method;
-use surfel::vk::DeviceOptions;
-use surfel::{Progress, Rasterizer, Result, Settings};
+use surfel::vk::{Device, DeviceOptions};
+use surfel::{Progress, Rasterizer, RasterizerChoice, Result, Settings};
 
 /// Options of the window.
 pub struct Options {
@@ -59,8 +60,10 @@ pub struct Options {
     pub size: [u32; 2],
     /// Which device renders and presents.
     pub device: DeviceOptions,
-    /// The rasterizer; `None` takes the faster one of the device.
+    /// The required rasterizer.
     pub rasterizer: Option<Rasterizer>,
+    /// The faster rasterizers of devices.
+    pub faster: FasterRasterizers,
     /// Up direction of the world, of any length; the nearest axis is taken.
     pub up: DVec3,
     /// Time budget of a frame while the camera moves, ms.
@@ -79,6 +82,13 @@ pub struct Options {
     pub settings_file: Option<PathBuf>,
     /// Whether the user chose a method or changed its settings: saved settings do not apply then.
     pub method_chosen: bool,
+}
+
+impl Options {
+    /// Choice of the rasterizer on a device.
+    fn rasterizer_on(&self, device: &Device) -> RasterizerChoice {
+        self.faster.choice(self.rasterizer, device.description())
+    }
 }
 
 /// A scene that was loaded, and how it is first shown.

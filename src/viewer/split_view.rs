@@ -6,14 +6,14 @@ use std::sync::Arc;
 use surfel::geometry::{Camera, ValueRange};
 use surfel::settings::Shading;
 use surfel::vk::{Presented, Presenter};
-use surfel::{FrameReport, Rasterizer, Result, Scene, Settings};
+use surfel::{FrameReport, RasterizerChoice, Result, Scene, Settings};
 
 /// Renders the scene to one or two cached views and presents them.
 pub struct SplitView {
     left: CachedView,
     /// The right picture; `None` until the view is split for the first time.
     right: Option<CachedView>,
-    rasterizer: Option<Rasterizer>,
+    rasterizer: RasterizerChoice,
     options: FrameOptions,
     /// Whether the last frame rendered a picture, and whether that needed new resources.
     rendered: bool,
@@ -41,7 +41,7 @@ pub struct Reports {
 
 impl SplitView {
     /// An empty view of the presenter's window.
-    pub fn new(presenter: &Presenter, rasterizer: Option<Rasterizer>) -> Result<Self> {
+    pub fn new(presenter: &Presenter, rasterizer: RasterizerChoice) -> Result<Self> {
         let left = CachedView::new(presenter, rasterizer)?;
         Ok(Self {
             left,

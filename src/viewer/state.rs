@@ -18,14 +18,14 @@ use surfel::geometry::{Camera, ColourScale, Pose};
 use surfel::settings::methods::Method;
 use surfel::settings::{Choice, Shading};
 use surfel::vk::Device;
-use surfel::{Rasterizer, Result, Scene, Settings};
+use surfel::{RasterizerChoice, Result, Scene, Settings};
 
 /// The scene that is shown, its camera and its settings.
 pub struct ViewState {
     pub viewport: Viewport,
     up: Up,
     method_settings: MethodSettings,
-    rasterizer: Option<Rasterizer>,
+    pub rasterizer: RasterizerChoice,
     /// Method and settings saved by the last run, until the first scene that can be rendered with them.
     saved: Option<(Method, Settings)>,
     /// Version of the scene's contents; rises with every change.
@@ -57,7 +57,7 @@ impl ViewState {
             viewport,
             up: nearest_axis(options.up),
             method_settings,
-            rasterizer: options.rasterizer,
+            rasterizer: options.rasterizer.into(),
             saved,
             version: 0,
             view: None,
@@ -336,6 +336,7 @@ mod tests {
     use crate::viewer::tests::device;
     use crate::viewer::{Events, Loaded, SaveFolder};
     use std::time::Instant;
+    use surfel::frame::faster::FasterRasterizers;
     use surfel::geometry::Surfels;
     use surfel::verify::scenes;
     use surfel::vk::DeviceOptions;
@@ -346,6 +347,7 @@ mod tests {
             size: [640, 480],
             device: DeviceOptions::default(),
             rasterizer: None,
+            faster: FasterRasterizers::default(),
             up: DVec3::Y,
             budget: 60.0,
             fov_y_deg: 45.0,

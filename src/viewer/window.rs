@@ -66,7 +66,7 @@ impl WindowRenderer {
     pub fn new(window: Arc<Window>, options: &Options) -> Result<(Self, Arc<Device>)> {
         let (device, surface) = Device::open_for(&options.device, window.clone())?;
         let presenter = Presenter::new(&device, surface)?;
-        let split_view = SplitView::new(&presenter, options.rasterizer)?;
+        let split_view = SplitView::new(&presenter, options.rasterizer_on(&device))?;
         let hud = Hud::new(&device, &window, presenter.overlay())?;
         let adaptive = AdaptiveResolution::new(options.budget);
         let (last, measured_content) = (None, None);

@@ -106,6 +106,58 @@ fn points_are_counted_by_every_rasterizer() {
 }
 
 #[test]
+fn the_faster_rasterizer_is_preferred() {
+    let Some(program) = Program::with_device("the_faster_rasterizer_is_preferred") else { return };
+    let devices: Value = serde_json::from_str(program.run("devices --json").text()).unwrap();
+    let device = devices.as_array().unwrap().iter().find(|device| device["chosen"] == true).unwrap();
+    let word = |key: &str| device[key].as_str().unwrap().to_owned();
+    let key = format!("{} | {}", word("name"), word("driver"));
+    let render = |options: &str| {
+        let command = "render scene:bumpy-sphere?points=500 -o a.png --size 64x64 --json -";
+        let run = program.run(&format!("{command} {options}"));
+        let report: Value = serde_json::from_str(run.text()).unwrap();
+        (report["rasterizer"].clone(), report["rasterizer_reason"].clone(), run.err)
+    };
+    let found = |options: &str| {
+        let (rasterizer, reason, _) = render(options);
+        [rasterizer, reason]
+    };
+    assert_eq!(found(""), ["compute", "default"]);
+    let interval =
+        |low: f64, high: f64| serde_json::json!({ &key: { "median": low, "low": low, "high": high } });
+    program.write(".cache/surfel/rasterizers.json", interval(0.5, 0.9).to_string());
+    assert_eq!(found(""), ["draw", "faster"]);
+    assert_eq!(found("--rasterizer compute"), ["compute", "required"]);
+    assert_eq!(found("--method pull-push"), ["compute", "default"]);
+    program.write(".cache/surfel/rasterizers.json", interval(0.9, 1.1).to_string());
+    assert_eq!(found(""), ["compute", "default"]);
+    program.write(".cache/surfel/rasterizers.json", "{");
+    let (rasterizer, _, messages) = render("");
+    assert_eq!(rasterizer, "compute");
+    assert!(messages.contains("rasterizers.json") && messages.contains("devices --measure"), "{messages}");
+}
+
+#[test]
+#[ignore = "takes long: tools/test --all"]
+fn rasterizers_are_measured() {
+    let Some(program) = Program::with_device("rasterizers_are_measured") else { return };
+    let measured: Value = serde_json::from_str(program.run("devices --measure --json").text()).unwrap();
+    assert_eq!(measured["measured"].as_array().unwrap().len(), 6);
+    let ratio = &measured["draw_over_compute"];
+    let known: Value =
+        serde_json::from_slice(&std::fs::read(program.path(".cache/surfel/rasterizers.json")).unwrap())
+            .unwrap();
+    assert_eq!(known.as_object().unwrap().values().collect::<Vec<_>>(), [ratio]);
+    let run = program.run("render scene:bumpy-sphere?points=500 -o a.png --size 64x64 --json -");
+    let report: Value = serde_json::from_str(run.text()).unwrap();
+    let faster = &measured["faster"];
+    assert!(
+        faster.is_null()
+            || (&report["rasterizer"], &report["rasterizer_reason"]) == (faster, &"faster".into())
+    );
+}
+
+#[test]
 fn later_frames_create_nothing_and_the_first_does_not_count() {
     let Some(program) = Program::with_device("later_frames_create_nothing_and_the_first_does_not_count")
     else {

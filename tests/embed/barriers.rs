@@ -53,7 +53,7 @@ fn no_barrier_waits_for_everything() {
     let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
     let frame = Frame::new(&host, kind, SIZE).unwrap();
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
-        let options = Options { rasterizer: Some(rasterizer), ..Options::new(frame.target()) };
+        let options = Options { rasterizer: rasterizer.into(), ..Options::new(frame.target()) };
         // SAFETY: the target is the frame's.
         let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
         for method in Method::ALL {

@@ -84,7 +84,8 @@ fn few_calls_lead_from_a_renderer_to_a_dispatch() {
     let frame = Frame::new(&host, kind, SIZE).unwrap();
     let view = View::whole(camera(), SIZE);
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute].map(Some) {
-        let options = Options { frames_in_flight: 1, rasterizer, ..Options::new(frame.target()) };
+        let options =
+            Options { frames_in_flight: 1, rasterizer: rasterizer.into(), ..Options::new(frame.target()) };
         // SAFETY: the target is the frame's.
         let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
         for method in Method::ALL {

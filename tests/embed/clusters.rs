@@ -97,8 +97,11 @@ fn render<'a>(
 
 fn renderer(device: &Arc<Device>) -> Renderer {
     let rasterizer = Some(Rasterizer::Compute);
-    Renderer::new(device, RenderOptions { size: SIZE, rasterizer, count: true, ..Default::default() })
-        .unwrap()
+    Renderer::new(
+        device,
+        RenderOptions { size: SIZE, rasterizer: rasterizer.into(), count: true, ..Default::default() },
+    )
+    .unwrap()
 }
 
 /// A scene of these surfels without bounds of its clusters, and their buffer.
@@ -197,7 +200,7 @@ fn clusters_of_instances_are_culled_one_by_one() {
     }
     // The raster path of pull-push, which culls no clusters, gives the same picture.
     let settings = Method::named("pull-push").unwrap().settings();
-    let options = RenderOptions { size: SIZE, rasterizer: Some(Rasterizer::Draw), ..Default::default() };
+    let options = RenderOptions { size: SIZE, rasterizer: Rasterizer::Draw.into(), ..Default::default() };
     let mut raster = Renderer::new(&device, options).unwrap();
     for camera in cameras() {
         let scenes = placed(&own, &own_few);

@@ -51,7 +51,7 @@ pub fn alone(
     rasterizer: Rasterizer,
 ) -> (Picture, SplatCounts) {
     let options =
-        RenderOptions { size: SIZE, rasterizer: Some(rasterizer), count: true, ..Default::default() };
+        RenderOptions { size: SIZE, rasterizer: rasterizer.into(), count: true, ..Default::default() };
     let mut renderer = surfel::Renderer::new(device, options).unwrap();
     let settings = settings(Method::named(name).unwrap());
     let (picture, report) = renderer.render_picture(scene, &view().camera, &settings).unwrap();

@@ -30,7 +30,7 @@ fn a_renderer_goes_to_another_thread(renderer: Renderer) -> impl Send {
 fn alone(settings: &Settings, camera: &Camera, rasterizer: Option<Rasterizer>) -> Picture {
     let device = Device::open(&DeviceOptions::default()).unwrap();
     let outputs = Outputs { normal: false, depth: true, id: false };
-    let options = RenderOptions { size: SIZE, outputs, rasterizer, ..Default::default() };
+    let options = RenderOptions { size: SIZE, outputs, rasterizer: rasterizer.into(), ..Default::default() };
     crate::support::gpu::render(&device, &surfels(), camera, settings, options)
 }
 
@@ -91,7 +91,7 @@ fn pictures_and_normals_are_where_the_host_wants_them() {
     {
         let outputs = Outputs { normal: true, depth: true, id: false };
         let options =
-            RenderOptions { size: SIZE, outputs, rasterizer: Some(rasterizer), ..Default::default() };
+            RenderOptions { size: SIZE, outputs, rasterizer: rasterizer.into(), ..Default::default() };
         let own = crate::support::gpu::render(&device, &surfels(), &camera(), &settings, options);
         let kind = Kind { way, colour: FLOATS, normals: true, samples: ONE, reversed: true };
         let mut fixture = Fixture::new(&host, kind, larger, Some(rasterizer), &surfels());

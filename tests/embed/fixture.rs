@@ -51,7 +51,7 @@ impl Fixture {
     ) -> Self {
         let device = host.external_device(None).unwrap();
         let frame = Frame::new(host, kind, size).unwrap();
-        let options = Options { rasterizer, ..Options::new(frame.target()) };
+        let options = Options { rasterizer: rasterizer.into(), ..Options::new(frame.target()) };
         // SAFETY: the target is the frame's.
         let renderer = unsafe { Renderer::new(&device, options) }.unwrap();
         let scene = upload(host, &device, surfels);

@@ -30,14 +30,14 @@ fn alone(
     rasterizer: Option<Rasterizer>,
 ) -> Picture {
     let device = Device::open(&DeviceOptions::default()).unwrap();
-    let options = RenderOptions { size: SIZE, outputs, rasterizer, ..Default::default() };
+    let options = RenderOptions { size: SIZE, outputs, rasterizer: rasterizer.into(), ..Default::default() };
     crate::support::gpu::render(&device, surfels, &camera(), settings, options)
 }
 
 /// A renderer for a frame.
 fn renderer(device: &Arc<Device>, frame: &Frame, rasterizer: Option<Rasterizer>) -> Renderer {
     let target = frame.target();
-    let options = Options { rasterizer, ..Options::new(target) };
+    let options = Options { rasterizer: rasterizer.into(), ..Options::new(target) };
     // SAFETY: the target is the frame's, which outlives the renderer.
     unsafe { Renderer::new(device, options) }.unwrap()
 }

@@ -52,14 +52,14 @@ fn instances(scenes: impl IntoIterator<Item = Arc<Scene>>) -> Vec<Instance> {
 fn alone(settings: &Settings, rasterizer: Rasterizer) -> Picture {
     let device = Device::open(&DeviceOptions::default()).unwrap();
     let outputs = Outputs { normal: false, depth: true, id: false };
-    let options = RenderOptions { size: SIZE, outputs, rasterizer: Some(rasterizer), ..Default::default() };
+    let options = RenderOptions { size: SIZE, outputs, rasterizer: rasterizer.into(), ..Default::default() };
     let scenes = parts().map(|(surfels, _)| Arc::new(Scene::upload(&device, &surfels).unwrap()));
     let mut renderer = surfel::Renderer::new(&device, options).unwrap();
     renderer.render_picture(&instances(scenes), &camera(), settings).unwrap().0
 }
 
 fn options(frame: &Frame, rasterizer: Option<Rasterizer>) -> Options {
-    Options { rasterizer, ..Options::new(frame.target()) }
+    Options { rasterizer: rasterizer.into(), ..Options::new(frame.target()) }
 }
 
 /// A frame of the instances; empty after an error.

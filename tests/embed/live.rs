@@ -92,7 +92,7 @@ fn buffers_that_take_turns_make_nothing() {
     let frame = Frame::new(&host, KIND, SIZE).unwrap();
     // For tiles splats are the frame's, not the scenes'.
     let rasterizer = Some(Rasterizer::Draw);
-    let options = Options { rasterizer, ..Options::new(frame.target()) };
+    let options = Options { rasterizer: rasterizer.into(), ..Options::new(frame.target()) };
     // SAFETY: the target is the frame's.
     let mut rig = Rig { renderer: unsafe { Renderer::new(&device, options) }.unwrap(), device, frame };
     let (layout, surfels) = (Layout::vertices(), sphere(2_000));

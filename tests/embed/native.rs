@@ -30,7 +30,7 @@ fn alone(surfels: &Surfels, settings: &Settings, camera: &Camera, normal: bool, 
     let device = Device::open(&DeviceOptions::default()).unwrap();
     let outputs = Outputs { normal, depth, id: false };
     let rasterizer = Some(Rasterizer::Draw);
-    let options = RenderOptions { size: SIZE, outputs, rasterizer, ..Default::default() };
+    let options = RenderOptions { size: SIZE, outputs, rasterizer: rasterizer.into(), ..Default::default() };
     crate::support::gpu::render(&device, surfels, camera, settings, options)
 }
 
@@ -235,7 +235,8 @@ fn sums_of_16_bits_are_the_engines_own_too() {
     let own = Device::open(&DeviceOptions::default()).unwrap();
     let outputs = Outputs { depth: true, ..Outputs::default() };
     let (precision, rasterizer) = (Precision::Half, Some(Rasterizer::Draw));
-    let options = RenderOptions { size: SIZE, outputs, precision, rasterizer, ..Default::default() };
+    let options =
+        RenderOptions { size: SIZE, outputs, precision, rasterizer: rasterizer.into(), ..Default::default() };
     let own = crate::support::gpu::render(&own, &surfels(), &camera(), &settings, options);
     let limits = DeviceLimits { blend_float32: Some(false), ..Default::default() };
     let device = host.external_device_within(limits, None).unwrap();

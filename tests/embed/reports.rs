@@ -27,8 +27,14 @@ fn reports(settings: &Settings, rasterizer: Option<Rasterizer>, count: bool) -> 
     let device = Device::open(&DeviceOptions::default()).unwrap();
     let scene = Scene::upload(&device, &surfels()).unwrap();
     let outputs = Outputs { normal: false, depth: true, id: false };
-    let options =
-        RenderOptions { size: SIZE, outputs, rasterizer, profile: true, count, ..Default::default() };
+    let options = RenderOptions {
+        size: SIZE,
+        outputs,
+        rasterizer: rasterizer.into(),
+        profile: true,
+        count,
+        ..Default::default()
+    };
     let mut renderer = surfel::Renderer::new(&device, options).unwrap();
     (0..5).map(|number| renderer.render(&scene, &nearer(number), settings).unwrap()).collect()
 }

@@ -42,7 +42,8 @@ impl Rig {
 
     pub fn on(host: &Host, device: Arc<Device>, rasterizer: Option<Rasterizer>) -> Self {
         let frame = Frame::new(host, KIND, SIZE).unwrap();
-        let options = Options { frames_in_flight: 8, rasterizer, ..Options::new(frame.target()) };
+        let options =
+            Options { frames_in_flight: 8, rasterizer: rasterizer.into(), ..Options::new(frame.target()) };
         // SAFETY: the target is the frame's.
         let renderer = unsafe { Renderer::new(&device, options) }.unwrap();
         Self { renderer, device, frame }

@@ -41,7 +41,7 @@ impl<'a> View<'a> {
         let options = RenderOptions {
             size: self.case.size,
             outputs: Outputs { normal: true, depth: true, id: false },
-            rasterizer: Some(rasterizer),
+            rasterizer: rasterizer.into(),
             ..Default::default()
         };
         renderers.render(surfels, &self.camera, settings, options)

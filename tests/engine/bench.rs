@@ -43,7 +43,10 @@ fn plan(scene: &str, points: u64, side: u32) -> Plan {
 /// A runner on a device with validation; `None`, with a message, without a device.
 fn runner(subjects: Vec<Rc<Subject>>) -> Option<Runner> {
     let device = device(DeviceLimits::default())?;
-    Some(Runner::new(Options { device: Some(device), cache: None, truth: TRUTH, effort: EFFORT }, subjects))
+    Some(Runner::new(
+        Options { device: Some(device), cache: None, truth: TRUTH, effort: EFFORT, ..Default::default() },
+        subjects,
+    ))
 }
 
 fn rmse(run: &Run) -> f64 {
@@ -53,7 +56,13 @@ fn rmse(run: &Run) -> f64 {
 #[test]
 fn a_run_has_its_time_its_error_and_the_terms_of_that() {
     let Some(device) = device(DeviceLimits::default()) else { return };
-    let options = Options { device: Some(device.clone()), cache: None, truth: TRUTH, effort: EFFORT };
+    let options = Options {
+        device: Some(device.clone()),
+        cache: None,
+        truth: TRUTH,
+        effort: EFFORT,
+        ..Default::default()
+    };
     let mut runner = Runner::new(options, Vec::new());
     let measurements = Measurements {
         time: true,
@@ -146,7 +155,7 @@ fn without_the_low_pass_the_horizon_aliases_and_the_error_grows() {
 
 #[test]
 fn without_a_device_a_run_is_refused_with_a_reason() {
-    let options = Options { device: None, cache: None, truth: TRUTH, effort: EFFORT };
+    let options = Options { device: None, cache: None, truth: TRUTH, effort: EFFORT, ..Default::default() };
     let run = Runner::new(options, Vec::new()).run(&plan("scene:torus", 1000, 32)).unwrap();
     assert!(run.refused.unwrap().contains("no usable Vulkan device"));
     assert!(run.time.is_none() && run.error.is_none());
@@ -156,7 +165,8 @@ fn without_a_device_a_run_is_refused_with_a_reason() {
 fn an_unsupported_run_is_refused_and_the_next_one_runs() {
     let limits = DeviceLimits { max_image_side: Some(64), ..Default::default() };
     let Some(device) = device(limits) else { return };
-    let options = Options { device: Some(device), cache: None, truth: TRUTH, effort: EFFORT };
+    let options =
+        Options { device: Some(device), cache: None, truth: TRUTH, effort: EFFORT, ..Default::default() };
     let mut runner = Runner::new(options, Vec::new());
     let large = runner.run(&plan("scene:torus", 1000, 128)).unwrap();
     assert!(large.refused.is_some_and(|why| why.contains("128")), "the size is named");

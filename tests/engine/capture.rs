@@ -52,7 +52,7 @@ fn sums(
 ) -> Vec<f64> {
     let splatting = Splatting { normalization: how, ..settings.splatting };
     let settings = Settings { splatting, shading: Shading::Weight, ..settings.clone() };
-    let options = RenderOptions { size: [256, 256], rasterizer: Some(rasterizer), ..Default::default() };
+    let options = RenderOptions { size: [256, 256], rasterizer: rasterizer.into(), ..Default::default() };
     let picture = render(device, surfels, camera, &settings, options);
     picture.colour.iter().filter(|pixel| pixel[3] > 0.0).map(|pixel| pixel[0].into()).collect()
 }
@@ -281,7 +281,7 @@ fn every_window_has_its_own_weights() {
     let expected = Expected::new(&surfels, &camera, size, &settings, &Tolerance::default()).unwrap();
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
         let outputs = Outputs { normal: true, depth: true, id: false };
-        let options = RenderOptions { size, outputs, rasterizer: Some(rasterizer), ..Default::default() };
+        let options = RenderOptions { size, outputs, rasterizer: rasterizer.into(), ..Default::default() };
         let judged = |surfels: &Surfels| {
             let picture: Picture = render(&device, surfels, &camera, &settings, options);
             expected.compare(&picture).unwrap()

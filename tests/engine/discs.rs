@@ -20,7 +20,7 @@ fn camera(eye: DVec3) -> Camera {
 
 fn options(rasterizer: Rasterizer) -> RenderOptions {
     let outputs = Outputs { normal: true, depth: true, id: false };
-    RenderOptions { size: SIZE, outputs, count: true, rasterizer: Some(rasterizer), ..Default::default() }
+    RenderOptions { size: SIZE, outputs, count: true, rasterizer: rasterizer.into(), ..Default::default() }
 }
 
 fn picture(device: &Arc<Device>, surfels: &Surfels, rasterizer: Rasterizer) -> Picture {

@@ -31,7 +31,7 @@ pub fn camera(size: [u32; 2]) -> Camera {
 
 pub fn all_outputs(rasterizer: Rasterizer) -> RenderOptions {
     let outputs = Outputs { normal: true, depth: true, id: false };
-    RenderOptions { size: SIZE, outputs, rasterizer: Some(rasterizer), ..Default::default() }
+    RenderOptions { size: SIZE, outputs, rasterizer: rasterizer.into(), ..Default::default() }
 }
 
 /// Whether `picture` matches the reference of the sphere with default settings.
@@ -84,7 +84,7 @@ fn pipelines_are_created_once_per_variant() {
     ];
     // Distinct values of the constants that each module reads.
     for (rasterizer, most) in [(Rasterizer::Draw, 17), (Rasterizer::Compute, 18)] {
-        let options = RenderOptions { size: SIZE, rasterizer: Some(rasterizer), ..Default::default() };
+        let options = RenderOptions { size: SIZE, rasterizer: rasterizer.into(), ..Default::default() };
         let mut renderer = Renderer::new(&device, options).unwrap();
         let before = device.usage().pipelines;
         for settings in frames.iter().chain(&frames) {
@@ -112,7 +112,7 @@ fn passes_and_targets_match_the_plan() {
         for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
             let options = RenderOptions {
                 size: SIZE,
-                rasterizer: Some(rasterizer),
+                rasterizer: rasterizer.into(),
                 profile: true,
                 ..Default::default()
             };
@@ -240,7 +240,7 @@ fn a_scene_without_colour_has_no_colour_target() {
     let without = Surfels { colours: None, ..with.clone() };
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
         let options =
-            RenderOptions { size: SIZE, rasterizer: Some(rasterizer), split: true, ..Default::default() };
+            RenderOptions { size: SIZE, rasterizer: rasterizer.into(), split: true, ..Default::default() };
         let targets = |surfels: &Surfels| {
             let scene = Scene::upload(&device, surfels).unwrap();
             let mut renderer = Renderer::new(&device, options).unwrap();
@@ -265,7 +265,7 @@ fn many_chunks_render_the_same_picture() {
     // The compute rasterizer's buffers fit at a smaller size.
     let small = RenderOptions { size: [128, 96], ..all_outputs(Rasterizer::Compute) };
     let [raster, compute] = [Rasterizer::Draw, Rasterizer::Compute].map(|rasterizer| {
-        picture_on(&device, &surfels, RenderOptions { rasterizer: Some(rasterizer), ..small })
+        picture_on(&device, &surfels, RenderOptions { rasterizer: rasterizer.into(), ..small })
     });
     assert!(largest_difference(&raster, &compute) < 1e-5);
     assert_silent(&device);
@@ -277,10 +277,10 @@ fn without_fragment_writes_coverage_takes_the_compute_path() {
     let Some(device) = device(limits.clone()) else { return };
     let surfels = sphere(5_000);
     let settings = Settings { alpha: Alpha::Coverage, ..Default::default() };
-    let run = |device: &Arc<Device>, rasterizer, settings: &Settings| {
+    let run = |device: &Arc<Device>, required: Option<Rasterizer>, settings: &Settings| {
         // Sums between passes need 16 bytes a pixel.
         let split = device.capabilities().max_storage_buffer_range < 1 << 20;
-        let options = RenderOptions { size: SIZE, rasterizer, split, ..Default::default() };
+        let options = RenderOptions { size: SIZE, rasterizer: required.into(), split, ..Default::default() };
         let scene = Scene::upload(device, &surfels)?;
         let mut renderer = Renderer::new(device, options)?;
         renderer.render(&scene, &camera(SIZE), settings).map(|_| renderer.rasterizer())

@@ -23,7 +23,7 @@ const BOTH: [Rasterizer; 2] = [Rasterizer::Draw, Rasterizer::Compute];
 
 fn options(rasterizer: Rasterizer) -> RenderOptions {
     let outputs = Outputs { normal: true, depth: true, id: false };
-    RenderOptions { size: SIZE, outputs, rasterizer: Some(rasterizer), ..Default::default() }
+    RenderOptions { size: SIZE, outputs, rasterizer: rasterizer.into(), ..Default::default() }
 }
 
 fn camera() -> Camera {

@@ -51,7 +51,7 @@ fn settings(name: &str) -> Settings {
 
 fn options(rasterizer: Rasterizer) -> RenderOptions {
     let outputs = Outputs { normal: true, depth: true, id: false };
-    RenderOptions { size: SIZE, outputs, rasterizer: Some(rasterizer), ..Default::default() }
+    RenderOptions { size: SIZE, outputs, rasterizer: rasterizer.into(), ..Default::default() }
 }
 
 /// Uploads surfels, each with its placement.

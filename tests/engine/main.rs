@@ -23,6 +23,7 @@ mod pull_push_levels;
 mod pull_push_lines;
 mod pull_push_points;
 mod pull_push_surfaces;
+mod rasterizers;
 mod reference;
 mod scans;
 #[cfg(feature = "compile-shaders")]

@@ -121,8 +121,8 @@ fn the_rasterizers_shine_alike_and_splats_as_the_frame_says() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let sheet = sheet();
     let plain = Surfels { materials: None, ..sheet.clone() };
-    let picture = |surfels: &Surfels, method, rasterizer| {
-        let options = RenderOptions { size: [SIDE; 2], rasterizer: Some(rasterizer), ..Default::default() };
+    let picture = |surfels: &Surfels, method, rasterizer: Rasterizer| {
+        let options = RenderOptions { size: [SIDE; 2], rasterizer: rasterizer.into(), ..Default::default() };
         render(&device, surfels, &camera(), &settings(method), options)
     };
     let [drawn, computed] =
@@ -201,7 +201,7 @@ fn fewer_surfels_leave_the_others_their_materials() {
     }
     materials.as_mut().unwrap().of.truncate(count);
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
-        let options = RenderOptions { size: [SIDE; 2], rasterizer: Some(rasterizer), ..Default::default() };
+        let options = RenderOptions { size: [SIDE; 2], rasterizer: rasterizer.into(), ..Default::default() };
         let scene = Scene::upload(&device, &model).unwrap();
         scene.set_count(count as u64).unwrap();
         let mut renderer = Renderer::new(&device, options).unwrap();

@@ -257,7 +257,7 @@ fn passes_and_targets_match_the_plan() {
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
         let options = RenderOptions {
             size: truth.size(),
-            rasterizer: Some(rasterizer),
+            rasterizer: rasterizer.into(),
             profile: true,
             ..Default::default()
         };
@@ -372,7 +372,7 @@ fn samples_are_as_wide_as_asked_for_whatever_sums_are() {
         // Level 0 of 64² px, and beside it the others, 32 px wide.
         assert_eq!(render(pull_push::METHOD), (precision, bytes * 64 * 96));
         // Computed points sum nothing.
-        let computed = RenderOptions { rasterizer: Some(Rasterizer::Compute), ..options };
+        let computed = RenderOptions { rasterizer: Rasterizer::Compute.into(), ..options };
         let mut renderer = Renderer::new(&device, computed).unwrap();
         renderer.render(&scene, &Truth::new(64).camera(), &pull_push::METHOD.settings()).unwrap();
     }

@@ -60,7 +60,7 @@ impl FrameCase<'_> {
         let options = RenderOptions {
             size: self.size,
             outputs,
-            rasterizer,
+            rasterizer: rasterizer.into(),
             count: true,
             split: true,
             ..Default::default()
@@ -301,9 +301,9 @@ fn a_device_without_64_bit_atomics_draws_points() {
         assert_same(&case.name, &drawn.0, &computed.0);
     }
     let model = scenes::model("scene:ribbon?segments=40&primitives=on").unwrap();
-    let refused = |parts: Parts, rasterizer| {
+    let refused = |parts: Parts, required: Option<Rasterizer>| {
         let scene = Scene::upload(&lesser, parts).unwrap();
-        let options = RenderOptions { size, rasterizer, ..Default::default() };
+        let options = RenderOptions { size, rasterizer: required.into(), ..Default::default() };
         let mut renderer = Renderer::new(&lesser, options).unwrap();
         renderer.render(&scene, &cameras(size)[0], &pull_push::METHOD.settings()).unwrap_err().to_string()
     };
@@ -338,7 +338,7 @@ fn a_second_frame_makes_nothing() {
     for rasterizer in BOTH {
         let options = RenderOptions {
             size: [100, 80],
-            rasterizer: Some(rasterizer),
+            rasterizer: rasterizer.into(),
             profile: true,
             count: true,
             ..Default::default()

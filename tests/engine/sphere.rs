@@ -60,7 +60,7 @@ fn coverage_is_what_the_surface_covers() {
         let errors = |alpha| {
             let settings = Settings { shading: Shading::Colour, alpha, ..Default::default() };
             let options =
-                RenderOptions { size: truth.size(), rasterizer: Some(rasterizer), ..Default::default() };
+                RenderOptions { size: truth.size(), rasterizer: rasterizer.into(), ..Default::default() };
             coverage_errors(&exact, &render(&device, &surfels, &truth.camera(), &settings, options))
         };
         let [(mask, _), (coverage, gaps)] = [Alpha::Mask, Alpha::Coverage].map(errors);
@@ -84,7 +84,7 @@ fn a_million_splats_show_what_rays_meet() {
                 let settings =
                     Settings { shading: Shading::Colour, lowpass, background, ..Default::default() };
                 let options =
-                    RenderOptions { size: truth.size(), rasterizer: Some(rasterizer), ..Default::default() };
+                    RenderOptions { size: truth.size(), rasterizer: rasterizer.into(), ..Default::default() };
                 render(&device, &surfels, &truth.camera(), &settings, options)
             };
             let (mut transparent, white) = (picture(None), picture(Some(WHITE)));

@@ -168,7 +168,7 @@ fn splats_beyond_buffer_limits_take_the_raster_path() {
     let mut renderer = Renderer::new(&device, options).unwrap();
     renderer.render(&scene, &camera([64; 2]), &Settings::default()).unwrap();
     assert_eq!(renderer.rasterizer(), Some(Rasterizer::Draw));
-    let compute = RenderOptions { rasterizer: Some(Rasterizer::Compute), ..options };
+    let compute = RenderOptions { rasterizer: Rasterizer::Compute.into(), ..options };
     let mut compute = Renderer::new(&device, compute).unwrap();
     let refused = compute.render(&scene, &camera([64; 2]), &Settings::default());
     assert!(matches!(refused.err(), Some(Error::Usage(text)) if text.contains("65536 texels")));
@@ -252,10 +252,11 @@ fn a_dense_spot_in_a_large_scene_has_all_of_its_splats() {
             assert!(apart < 1e-4 && !report.incomplete, "{name}, frame {frame}: {apart}");
         }
         let bounded = RenderOptions { most_splats: Some(1_000), ..all_outputs(Rasterizer::Compute) };
-        let raster = RenderOptions { rasterizer: Some(Rasterizer::Draw), ..bounded };
+        let raster = RenderOptions { rasterizer: Rasterizer::Draw.into(), ..bounded };
         let rejected = Renderer::new(&device, raster).unwrap().render(&scene, &camera(SIZE), &settings);
         assert!(matches!(rejected.err(), Some(Error::Usage(text)) if text.contains("most_splats")));
-        let mut bounded = Renderer::new(&device, RenderOptions { rasterizer: None, ..bounded }).unwrap();
+        let mut bounded =
+            Renderer::new(&device, RenderOptions { rasterizer: None.into(), ..bounded }).unwrap();
         let (picture, report) = bounded.render_picture(&scene, &camera(SIZE), &settings).unwrap();
         assert!(report.incomplete && largest_difference(&drawn, &picture) > 1e-3, "{name}");
     }

@@ -122,7 +122,7 @@ impl Variant {
             size,
             outputs,
             precision,
-            rasterizer: Some(rasterizer),
+            rasterizer: rasterizer.into(),
             profile: false,
             count: true,
             ..Default::default()

@@ -64,7 +64,7 @@ pub enum Command {
     #[cfg(feature = "bench")]
     Bench(Box<Bench>),
     /// Lists the Vulkan devices; * marks the default
-    Devices(Listing),
+    Devices(Devices),
     /// Lists the methods: paper, axes, passes, render targets
     Methods(Methods),
     /// Lists the built-in scenes with their parameters
@@ -73,6 +73,20 @@ pub enum Command {
     Completions(Completions),
     /// Writes the man pages, surfel.1 and one for each command, to a folder
     Man(Man),
+}
+
+/// Options of `surfel devices`.
+#[derive(Args, Debug)]
+pub struct Devices {
+    /// Prints JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Measures which rasterizer is faster on the device; later commands prefer it
+    #[arg(long)]
+    pub measure: bool,
+    /// The device to measure, by its index or part of its name
+    #[arg(long, value_name = "INDEX|NAME", requires = "measure")]
+    pub device: Option<String>,
 }
 
 /// Options of the commands that print a list.
@@ -313,7 +327,7 @@ pub struct Backend {
     /// Renders with the float64 reference on the CPU, without Vulkan
     #[arg(long, conflicts_with_all = ["half", "device", "validate", "device_limits"])]
     pub reference: bool,
-    /// The device's rasterizer, or compute shaders [default: the faster one of the device]
+    /// The device's rasterizer, or compute shaders [default: compute, or the faster one that `surfel devices --measure` found]
     #[arg(long, value_parser = choice::<Rasterizer>(), conflicts_with = "reference")]
     pub rasterizer: Option<Rasterizer>,
     /// Stores sums in 16-bit floats, and pull-push samples in 24 instead of 48 bytes: half the memory, less precise

@@ -35,7 +35,7 @@ pub struct View {
     /// The render settings
     #[command(flatten)]
     pub render_settings: RenderSettings,
-    /// The device's rasterizer, or compute shaders [default: the faster one of the device]
+    /// The device's rasterizer, or compute shaders [default: compute, or the faster one that `surfel devices --measure` found]
     #[arg(long, value_parser = choice::<Rasterizer>())]
     pub rasterizer: Option<Rasterizer>,
     /// Time budget of a frame while the camera moves, ms; slower frames become coarser

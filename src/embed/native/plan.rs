@@ -270,7 +270,7 @@ impl HostSide {
     /// Render options of the frames.
     fn options(&self, size: [u32; 2], precision: Precision) -> RenderOptions {
         let outputs = Outputs { normal: self.normal.is_some(), depth: self.depth.is_some(), id: false };
-        RenderOptions { size, outputs, precision, rasterizer: Some(Rasterizer::Draw), ..Default::default() }
+        RenderOptions { size, outputs, precision, rasterizer: Rasterizer::Draw.into(), ..Default::default() }
     }
 
     fn of(host_pass: &HostRenderPass<'_>) -> Self {
@@ -367,7 +367,7 @@ fn variant(
     settings.check()?;
     settings.splatting.normalization.check_weights(streams.weights.is_some())?;
     settings.check_primitives(streams.primitives.any())?;
-    let rasterizer = rasterizer_for(device, options, settings.alpha, Fit::ALL)?;
+    let (rasterizer, _) = rasterizer_for(device, options, settings.alpha, Fit::ALL)?;
     let options = RenderOptions { precision: width_of_sums(device, options, rasterizer), ..*options };
     Ok(Variant::new(&[streams], true, settings, &options, rasterizer))
 }

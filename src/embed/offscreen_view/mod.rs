@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::frame::FrameReport;
 use crate::geometry::{Camera, ValueRange};
 use crate::scene::Scene;
-use crate::settings::Rasterizer;
+use crate::settings::RasterizerChoice;
 use crate::settings::Settings;
 use crate::vk::{
     Access, Attachment, Buffer, Device, FRAMES_IN_FLIGHT, Framebuffer, Image, ImageUse, Presented, Presenter,
@@ -68,7 +68,7 @@ struct Targets {
 
 impl OffscreenView {
     /// Creates a view for frames of `presenter`; nothing is drawn yet.
-    pub fn new(presenter: &Presenter, rasterizer: Option<Rasterizer>) -> Result<Self> {
+    pub fn new(presenter: &Presenter, rasterizer: RasterizerChoice) -> Result<Self> {
         let device = presenter.device();
         presenter.rehearse(COLOUR)?;
         let pass = RenderPass::new(device, &[Attachment::Cleared(COLOUR)], Some(Attachment::Cleared(DEPTH)))?;

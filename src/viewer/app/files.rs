@@ -114,7 +114,7 @@ impl App {
                 let Some(frame) = state.frame(0) else { return Ok(()) };
                 let (scene, camera, settings) = frame?;
                 let values = kind == ScreenshotKind::Values;
-                let rasterizer = self.options.rasterizer;
+                let rasterizer = state.rasterizer;
                 Screenshot::render(device, scene, (&camera, &settings), (size, rasterizer), values)?
             }
         };

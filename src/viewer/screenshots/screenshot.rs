@@ -6,7 +6,7 @@ use surfel::formats::image::{Encoded, Output, write};
 use surfel::geometry::Camera;
 use surfel::settings::Shading;
 use surfel::vk::Device;
-use surfel::{Outputs, Picture, Rasterizer, RenderOptions, Renderer, Result, Scene, Settings};
+use surfel::{Outputs, Picture, RasterizerChoice, RenderOptions, Renderer, Result, Scene, Settings};
 
 /// What a screenshot shows, and its file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +31,7 @@ impl Screenshot {
         device: &Arc<Device>,
         scene: &Scene,
         (camera, settings): (&Camera, &Settings),
-        (size, rasterizer): ([u32; 2], Option<Rasterizer>),
+        (size, rasterizer): ([u32; 2], RasterizerChoice),
         values: bool,
     ) -> Result<Self> {
         let outputs = Outputs::default().with_mask(settings);
