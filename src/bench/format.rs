@@ -79,9 +79,10 @@ pub fn size([width, height]: [u32; 2]) -> String {
     format!("{width}×{height}")
 }
 
-/// A scene's name without its prefix.
+/// A built-in scene's name without its prefix, or a file's name without its folder.
 pub fn scene(name: &str) -> &str {
-    name.strip_prefix("scene:").unwrap_or(name)
+    let file = || name.rsplit(['/', '\\']).next().unwrap_or(name);
+    name.strip_prefix("scene:").unwrap_or_else(file)
 }
 
 /// What distinguishes an implementation from the others: its variant if all have the same method.

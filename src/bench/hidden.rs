@@ -57,14 +57,14 @@ mod tests {
         let subject = Subject::scene("scene:sphere").unwrap();
         let eye = DVec3::new(0.0, 0.0, 4.0);
         let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::Y, 0.7, 1.0, 0.1).unwrap();
-        let visible = visible_surfels(&surfels, subject.surface(), &camera);
+        let visible = visible_surfels(&surfels, subject.surface().unwrap(), &camera);
         // The horizon is where the eye's rays touch: z = 1 / 4.
         let in_front = surfels.positions.iter().filter(|p| p.z > 0.25).count();
         assert!(visible.len().abs_diff(in_front) < surfels.len() / 500, "{} {in_front}", visible.len());
         assert!(visible.positions.iter().all(|p| p.z > 0.2));
         // Noise does not change which surfels are visible.
         let noisy = scenes::open("scene:sphere?points=20000&noise=0.2").unwrap();
-        let still_seen = visible_surfels(&noisy, subject.surface(), &camera);
+        let still_seen = visible_surfels(&noisy, subject.surface().unwrap(), &camera);
         // Noise moves some beyond the horizon into view.
         assert!(still_seen.len().abs_diff(in_front) < surfels.len() / 20, "{} {in_front}", still_seen.len());
         assert_eq!(visible.colours.as_ref().map(Colours::len), Some(visible.len()));
@@ -76,7 +76,7 @@ mod tests {
         let subject = Subject::scene("scene:slabs?slabs=1&thickness=0.001").unwrap();
         let eye = DVec3::new(0.1, 5.0, 0.1);
         let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::Z, 0.7, 1.0, 0.1).unwrap();
-        let visible = visible_surfels(&surfels, subject.surface(), &camera);
+        let visible = visible_surfels(&surfels, subject.surface().unwrap(), &camera);
         let middle = subject.bounds().centre().y as f32;
         let upper = surfels.positions.iter().filter(|p| p.y > middle).count();
         assert!(visible.len().abs_diff(upper) < surfels.len() / 100, "{} {upper}", visible.len());

@@ -17,7 +17,7 @@
 //! | [`hard`] | numerically hard cases: float32 against float64 |
 //! | [`record`] | results, as stored in JSON |
 //! | [`table`], [`csv`], [`report`] | results as text, CSV and HTML |
-//! | [`recommendations`], [`convergence`] | evaluation of the results |
+//! | [`recommendations`], [`standings`], [`convergence`] | evaluation of the results |
 
 pub mod code;
 pub mod convergence;
@@ -36,6 +36,7 @@ pub mod record;
 pub mod report;
 pub mod runner;
 pub mod session;
+pub mod standings;
 pub mod stopwatch;
 pub mod subject;
 pub mod suites;

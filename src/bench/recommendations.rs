@@ -4,7 +4,7 @@
 //! best run is the one of least error within it; for a budget of error, the fastest.
 
 use super::group::grouped;
-use super::record::{Experiment, Run, Session};
+use super::record::{Experiment, Run, Session, View};
 
 /// A run that was timed and compared with the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,13 +17,11 @@ pub struct Candidate<'a> {
     pub rmse: f64,
 }
 
-/// A scene at one size, with its Pareto front.
+/// A scene at one size and shading, with its Pareto front.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column<'a> {
-    /// The scene.
-    pub scene: &'a str,
-    /// Width and height, px.
-    pub size: [u32; 2],
+    /// What the runs show.
+    pub view: View<'a>,
     /// The [`front`] of its runs.
     pub front: Vec<Candidate<'a>>,
 }
@@ -31,7 +29,7 @@ pub struct Column<'a> {
 /// Recommendations of one session; times of other sessions are of other machines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recommendations<'a> {
-    /// One per scene and size, in the order of the runs.
+    /// One per scene, size and shading, in the order of the runs.
     pub columns: Vec<Column<'a>>,
     /// [`budgets`] of time, ms.
     pub times: Vec<f64>,
@@ -40,15 +38,13 @@ pub struct Recommendations<'a> {
 }
 
 impl<'a> Recommendations<'a> {
-    /// From the budget experiment's runs, without the CPU baseline; none if there are no such runs.
+    /// From the budget experiment's runs against exact pictures, without the CPU baseline; none if there are no such runs.
     pub fn of(session: &'a Session) -> Option<Self> {
-        let methods = |run: &&Run| run.experiment == Experiment::Budget && !run.implementation.is_baseline();
-        let groups = grouped(session.runs.iter().filter(methods), |run| (run.scene.as_str(), run.size));
-        let column = |((scene, size), runs): (_, Vec<&'a Run>)| Column {
-            scene,
-            size,
-            front: front(&candidates(runs)),
+        let methods = |run: &&Run| {
+            run.experiment == Experiment::Budget && !run.implementation.is_baseline() && run.has_truth()
         };
+        let groups = grouped(session.runs.iter().filter(methods), Run::view);
+        let column = |(view, runs): (_, Vec<&'a Run>)| Column { view, front: front(&candidates(runs)) };
         let mut columns: Vec<Column<'a>> = groups.into_iter().map(column).collect();
         columns.retain(|column| !column.front.is_empty());
         let best = || columns.iter().flat_map(|column| &column.front);

@@ -4,8 +4,8 @@
 mod run;
 
 pub use run::{
-    Axes, Blended, Error, Experiment, Float64Error, Implementation, Memory, PIXELS, Pass, Run, RunSettings,
-    SPLATS, Terms, Time,
+    Against, Axes, Blended, Error, Experiment, Float64Error, Implementation, Memory, PIXELS, Pass, Run,
+    RunSettings, SPLATS, Terms, Time, View,
 };
 
 use jiff::Timestamp;

@@ -3,7 +3,7 @@
 use super::engine::{CpuEngine, DeviceEngine, Engine, LoadedEngine};
 use super::papers::details;
 use super::plan::Plan;
-use super::record::{self, Float64Error, Images, Run, RunSettings, Time};
+use super::record::{self, Against, Float64Error, Images, Run, RunSettings, Time};
 use super::subject::{Subject, pixel_angle};
 use super::{error_terms, hidden, images, stopwatch};
 use crate::capture::{self, capture};
@@ -17,7 +17,7 @@ use crate::verify::metrics::flicker::Flicker;
 use crate::verify::metrics::{self, Pair, colour};
 use crate::verify::reference::{self, Expected, Tolerance};
 use crate::verify::scenes::Viewpoint;
-use crate::verify::truth::{self, Cache, Truth};
+use crate::verify::truth::{self, Cache, StandardError, Traceable, Truth};
 use crate::vk::Device;
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -106,10 +106,7 @@ impl Runner {
             None => Rc::new(Subject::scene(&plan.scene)?),
         };
         self.subject = Some(subject.clone());
-        let (points, radius_scale) = (plan.points, plan.radius_scale);
-        let by_surfel = plan.settings.splatting.normalization == Normalization::Surfel;
-        let weights = by_surfel.then(|| capture::plain(&plan.settings));
-        let key = ModelKey { scene: plan.scene.clone(), points, radius_scale, weights };
+        let key = self.key(plan);
         let model = match self.model.take() {
             Some((of, model)) if of == key => model,
             _ => Rc::new(self.model(&subject, &key)?),
@@ -230,6 +227,7 @@ impl Runner {
         let details = if job.plan.measurements.details { details::of(&pair) } else { Vec::new() };
         let finite = known.chain(details).filter(|(_, value)| value.is_finite());
         Ok(record::Error {
+            against: if job.subject.surface().is_some() { Against::Surface } else { Against::OwnReference },
             filter: filter_name(&self.options.truth),
             truth_rms: truth.error.rms,
             metrics: finite.map(|(name, value)| (name.into(), value)).collect(),
@@ -244,7 +242,8 @@ impl Runner {
         expected: Option<&Picture>,
         run: &mut Run,
     ) -> Result<()> {
-        let visible = hidden::visible_surfels(&job.model.surfels, job.subject.surface(), &job.camera);
+        let Some(surface) = job.subject.surface() else { return Ok(()) };
+        let visible = hidden::visible_surfels(&job.model.surfels, surface, &job.camera);
         let clean = if visible.is_empty() {
             Picture { size: picture.size, colour: vec![[0.0; 4]; picture.colour.len()], ..Default::default() }
         } else {
@@ -277,29 +276,60 @@ impl Runner {
         flicker.value()
     }
 
-    /// The exact picture: traced once, and cached on disk if there is a folder.
+    /// The exact picture, or the supersampled reference if the surface is unknown. Each is rendered once.
     fn truth(&mut self, job: &Job<'_>, camera: &Camera) -> Result<Rc<Truth>> {
-        let Settings { shading, background, lighting, .. } = job.plan.settings.clone();
-        let settings = Settings { shading, background, lighting, ..Default::default() };
-        let (surface, size, options) = (job.subject.surface(), job.plan.size, &self.options.truth);
-        let key = format!("{} {size:?} {settings:?} {camera:?}", job.plan.scene);
+        let own = &job.plan.settings;
+        let settings = match job.subject.surface() {
+            Some(_) => Settings {
+                shading: own.shading,
+                background: own.background,
+                lighting: own.lighting.clone(),
+                ..Default::default()
+            },
+            None => own.clone(),
+        };
+        let key = format!("{} {:?} {settings:?} {camera:?}", job.plan.scene, job.plan.size);
         if let Some(truth) = self.truths.get(&key) {
             return Ok(truth.clone());
         }
-        let truth = Rc::new(match &self.options.cache {
-            Some(folder) => Cache::new(folder).render(
-                &job.subject.digest,
-                surface,
-                camera,
-                &settings,
-                size,
-                options,
-                &(),
-            )?,
-            None => truth::render(surface, camera, &settings, size, options, &())?,
+        let truth = Rc::new(match job.subject.surface() {
+            Some(surface) => self.exact(job, surface, camera, &settings)?,
+            None => self.supersampled(job, camera, &settings)?,
         });
         self.truths.insert(key, truth.clone());
         Ok(truth)
+    }
+
+    /// The exact picture of a surface, cached on disk if there is a folder.
+    fn exact(
+        &self,
+        job: &Job<'_>,
+        surface: &dyn Traceable,
+        camera: &Camera,
+        settings: &Settings,
+    ) -> Result<Truth> {
+        let (size, options, digest) = (job.plan.size, &self.options.truth, &job.subject.digest);
+        match &self.options.cache {
+            Some(folder) => Cache::new(folder).render(digest, surface, camera, settings, size, options, &()),
+            None => truth::render(surface, camera, settings, size, options, &()),
+        }
+    }
+
+    /// The float64 reference of all points, with 64 rays a pixel.
+    fn supersampled(&self, job: &Job<'_>, camera: &Camera, settings: &Settings) -> Result<Truth> {
+        let points = job.subject.most_points().unwrap_or(job.plan.points);
+        let key = ModelKey { points, ..self.key(job.plan) };
+        let model = self.model(&job.subject, &key)?;
+        let (size, filter) = (job.plan.size, self.options.truth.filter);
+        let picture = truth::supersampled(&model, camera, settings, size, filter, &())?;
+        Ok(Truth { picture, error: StandardError::default() })
+    }
+
+    /// Key of a plan's model.
+    fn key(&self, plan: &Plan) -> ModelKey {
+        let by_surfel = plan.settings.splatting.normalization == Normalization::Surfel;
+        let weights = by_surfel.then(|| capture::plain(&plan.settings));
+        ModelKey { scene: plan.scene.clone(), points: plan.points, radius_scale: plan.radius_scale, weights }
     }
 }
 

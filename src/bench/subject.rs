@@ -1,4 +1,4 @@
-//! Subjects of measurements: points of a built-in scene or a scan, and their exact surface.
+//! Subjects of measurements: points of a built-in scene or a scan, and their exact surface, if it is known.
 
 use crate::error::{Error, Result};
 use crate::estimate::Estimate;
@@ -17,23 +17,24 @@ const FOV: f64 = 45.0;
 pub struct Subject {
     /// The scene with its parameters, without the number of points; or the file.
     pub name: String,
-    /// Cache key of its exact pictures.
+    /// Cache key of its exact pictures; empty without a surface.
     pub digest: String,
     viewpoint: Viewpoint,
+    bounds: Bounds,
     shape: Shape,
 }
 
 enum Shape {
     /// A built-in scene.
     Built(Built),
-    /// A scan, and the mesh that serves as its exact surface.
+    /// A scan.
     Scan(Box<Scan>),
 }
 
-/// Points, and the surface that they sample.
+/// Points, and the surface that they sample, if it is known.
 struct Scan {
     cloud: Cloud,
-    mesh: Mesh,
+    mesh: Option<Mesh>,
 }
 
 /// A built-in surface.
@@ -60,24 +61,35 @@ impl Subject {
                 "{name}: the bench sets the number of points; leave out `points`"
             )));
         }
-        let (viewpoint, shape) = (scenes::camera(name)?, Shape::Built(Built(scenes::surface(name)?)));
-        Ok(Self { name: name.into(), digest: name.into(), viewpoint, shape })
+        let built = Built(scenes::surface(name)?);
+        let (viewpoint, bounds) = (scenes::camera(name)?, truth::Traceable::bounds(&built));
+        Ok(Self { name: name.into(), digest: name.into(), viewpoint, bounds, shape: Shape::Built(built) })
     }
 
-    /// The points of a PLY file, with the triangles of `mesh` or its own as the exact surface.
+    /// The points of a file, with the triangles of `mesh` or its own as the exact surface. Without triangles the surface is unknown.
     ///
     /// # Errors
-    /// [`Error::Io`] and [`Error::Input`] if a file cannot be read, or has no triangles.
+    /// [`Error::Io`] and [`Error::Input`] if a file cannot be read, has no points, or `mesh` has no triangles.
     pub fn scan(path: &Path, mesh: Option<&Path>, progress: &dyn Progress) -> Result<Self> {
         let triangles = ReadOptions { triangles: true, ..Default::default() };
         let cloud = formats::read(path, &triangles, progress)?.cloud;
         let other =
             mesh.map(|mesh| Ok::<_, Error>(formats::read(mesh, &triangles, progress)?.cloud)).transpose()?;
-        let mesh_name = mesh.unwrap_or(path).display().to_string();
-        let mesh = Mesh::new(&mesh_name, other.as_ref().unwrap_or(&cloud))?;
-        let viewpoint = framing(&truth::Traceable::bounds(&mesh))?;
-        let (name, digest) = (path.display().to_string(), mesh.digest());
-        Ok(Self { name, digest, viewpoint, shape: Shape::Scan(Box::new(Scan { cloud, mesh })) })
+        let name = path.display().to_string();
+        let mesh = match (mesh, other) {
+            (Some(mesh), Some(other)) => Some(Mesh::new(&mesh.display().to_string(), &other)?),
+            _ if cloud.triangles.is_empty() => None,
+            _ => Some(Mesh::new(&name, &cloud)?),
+        };
+        let bounds = match &mesh {
+            Some(mesh) => truth::Traceable::bounds(mesh),
+            None => match Bounds::of(&cloud.positions) {
+                Some(bounds) => bounds.translated(cloud.origin),
+                None => return Err(Error::input(name, "no points: give points, or a mesh")),
+            },
+        };
+        let (viewpoint, digest) = (framing(&bounds)?, mesh.as_ref().map(Mesh::digest).unwrap_or_default());
+        Ok(Self { name, digest, viewpoint, bounds, shape: Shape::Scan(Box::new(Scan { cloud, mesh })) })
     }
 
     /// Greatest number of points; none if there is no limit.
@@ -125,9 +137,9 @@ impl Subject {
         viewpoint.camera(f64::from(size[0]) / f64::from(size[1]), &self.bounds())
     }
 
-    /// Bounds of the surface.
+    /// Bounds of the surface, or of the points.
     pub fn bounds(&self) -> Bounds {
-        self.surface().bounds()
+        self.bounds
     }
 
     /// Area of the surface, hidden parts included; none if unknown.
@@ -138,11 +150,11 @@ impl Subject {
         }
     }
 
-    /// The exact surface.
-    pub fn surface(&self) -> &dyn truth::Traceable {
+    /// The exact surface, if it is known.
+    pub fn surface(&self) -> Option<&dyn truth::Traceable> {
         match &self.shape {
-            Shape::Built(built) => built,
-            Shape::Scan(scan) => &scan.mesh,
+            Shape::Built(built) => Some(built),
+            Shape::Scan(scan) => scan.mesh.as_ref().map(|mesh| mesh as &dyn truth::Traceable),
         }
     }
 

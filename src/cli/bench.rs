@@ -121,6 +121,7 @@ fn command(args: &Bench, suites: &[Suite]) -> String {
     let list = |words: Vec<String>| (!words.is_empty()).then(|| words.join(","));
     option("truth", path(&args.truth));
     option("points", list(args.points.iter().map(u64::to_string).collect()));
+    option("method", list(args.method.iter().map(|method| method.name.to_owned()).collect()));
     option("size", args.size.map(|[width, height]| format!("{width}x{height}")));
     let named = suites.iter().filter(|suite| **suite != Suite::Inputs);
     option("suite", list(named.map(|suite| suite.name().to_owned()).collect()));
@@ -167,7 +168,8 @@ fn wanted(args: &Bench, suites: Vec<Suite>, progress: &dyn Progress) -> Result<S
                 .map(|input| subject(args, input, progress))
                 .collect::<Result<_>>()?,
             points: args.points.clone(),
-            size: args.size.unwrap_or(UserInputs::default().size),
+            size: args.size,
+            methods: args.method.clone(),
         },
         device,
         validated: args.device.validate,

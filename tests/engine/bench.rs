@@ -6,12 +6,15 @@ use std::f64::consts::PI;
 use std::path::Path;
 use std::rc::Rc;
 use std::time::Duration;
+use surfel::bench::Suite;
 use surfel::bench::engine::Engine;
 use surfel::bench::plan::{Measurements, Plan};
 use surfel::bench::record::{Experiment, Run};
 use surfel::bench::runner::{Options, Runner};
 use surfel::bench::stopwatch::Effort;
 use surfel::bench::subject::Subject;
+use surfel::bench::suites::UserInputs;
+use surfel::settings::methods::Method;
 use surfel::settings::{Settings, Shading};
 use surfel::verify::truth;
 use surfel::vk::DeviceLimits;
@@ -203,7 +206,6 @@ fn a_scan_is_compared_with_its_mesh_at_any_density() {
     sphere(&scan);
     let bare = std::fs::read_to_string(&scan).unwrap().replace("element face 14400", "element other 14400");
     std::fs::write(&points, bare).unwrap();
-    assert!(Subject::scan(&points, None, &()).is_err_and(|error| error.to_string().contains("no triangles")));
     let subject = Rc::new(Subject::scan(&points, Some(&scan), &()).unwrap());
     let most = subject.most_points().unwrap();
     let Some(mut runner) = runner(vec![subject.clone()]) else { return };
@@ -226,6 +228,66 @@ fn a_scan_is_compared_with_its_mesh_at_any_density() {
     // The mesh lies slightly below its own corners, which must not count as hidden.
     let terms = whole.error.unwrap().terms;
     assert!(terms.hidden.unwrap() < terms.silhouette, "{terms:?}");
+}
+
+#[test]
+fn points_of_an_unknown_surface_are_compared_with_their_own_reference() {
+    let folder = tempfile::tempdir().unwrap();
+    let [scan, points] = ["mesh.ply", "points.ply"].map(|name| folder.path().join(name));
+    sphere(&scan);
+    let bare = std::fs::read_to_string(&scan).unwrap().replace("element face 14400", "element other 14400");
+    std::fs::write(&points, bare).unwrap();
+    let subject = Rc::new(Subject::scan(&points, None, &()).unwrap());
+    assert!(subject.surface().is_none() && !subject.is_coloured());
+    assert!(
+        Subject::scan(&scan, Some(&points), &())
+            .is_err_and(|error| error.to_string().contains("no triangles"))
+    );
+    let most = subject.most_points().unwrap();
+    let Some(mut runner) = runner(vec![subject.clone()]) else { return };
+    for method in ["perspective-ewa", "pull-push"] {
+        let mut of = |points| {
+            let mut plan = plan(&subject.name, points, 96);
+            plan.settings = Settings { shading: Shading::Lit, ..Method::named(method).unwrap().settings() };
+            runner.run(&plan).unwrap()
+        };
+        let (thin, whole) = (of(800), of(most));
+        println!("{method}: {} of all points, {} of 800", rmse(&whole), rmse(&thin));
+        assert!([&thin, &whole].iter().all(|run| !run.has_truth()));
+        // Thinning adds to aliasing.
+        assert!(rmse(&whole) > 0.0 && rmse(&whole) < 0.9 * rmse(&thin) && rmse(&thin) < 0.2);
+    }
+}
+
+#[test]
+fn inputs_are_rendered_by_every_method_lit_and_in_their_colours() {
+    let folder = tempfile::tempdir().unwrap();
+    let scan = folder.path().join("mesh.ply");
+    sphere(&scan);
+    let lit = Rc::new(Subject::scan(&scan, None, &()).unwrap());
+    let coloured = Rc::new(Subject::scene("scene:torus").unwrap());
+    let plans = |methods: Vec<Method>| {
+        let inputs = UserInputs {
+            subjects: vec![lit.clone(), coloured.clone()],
+            points: vec![500],
+            methods,
+            ..UserInputs::default()
+        };
+        Suite::Inputs.plans(&inputs)
+    };
+    let of = |plans: &[Plan], subject: &Subject, shading| {
+        let own = plans.iter().filter(|plan| plan.scene == subject.name && plan.settings.shading == shading);
+        own.map(|plan| plan.engine.implementation(&plan.settings).method).collect::<Vec<_>>()
+    };
+    let all = plans(Vec::new());
+    let mut expected: Vec<_> = Method::ALL.iter().map(|method| method.name).collect();
+    expected.extend(["perspective-ewa", "baseline-splats", "baseline-pixels"]);
+    assert_eq!(of(&all, &lit, Shading::Lit), expected);
+    assert_eq!(of(&all, &lit, Shading::Colour), [""; 0]);
+    assert_eq!(of(&all, &coloured, Shading::Lit), expected);
+    assert_eq!(of(&all, &coloured, Shading::Colour), expected);
+    let some = plans(vec![Method::named("sprites").unwrap()]);
+    assert_eq!(of(&some, &lit, Shading::Lit), ["sprites", "baseline-splats", "baseline-pixels"]);
 }
 
 #[test]

@@ -4,6 +4,7 @@ use crate::support::results::*;
 use std::collections::BTreeMap;
 use surfel::bench::recommendations::{Recommendations, candidates, front, within_error, within_time};
 use surfel::bench::record::*;
+use surfel::bench::standings::{Standing, standings};
 use surfel::bench::{Results, csv, report, table};
 
 const NOW: &str = "aaaaaaaaaaaa";
@@ -147,7 +148,7 @@ fn recommendations_are_by_scene_and_size_and_of_budget_runs_only() {
     let columns: Vec<_> = recommendations
         .columns
         .iter()
-        .map(|column| (column.scene, column.size[0], column.front.len()))
+        .map(|column| (column.view.scene, column.view.size[0], column.front.len()))
         .collect();
     assert_eq!(columns, [("scene:a", 512, 1), ("scene:b", 512, 1), ("scene:a", 64, 1)]);
     assert_eq!(recommendations.times, [10.0, 20.0, 50.0, 100.0, 200.0, 500.0]);
@@ -156,11 +157,71 @@ fn recommendations_are_by_scene_and_size_and_of_budget_runs_only() {
     assert_eq!(Recommendations::of(&session), None);
 }
 
+/// The methods, with these errors.
+fn methods(errors: &[(&str, f64)]) -> Vec<Run> {
+    let one = |(method, rmse): &(&str, f64)| Run {
+        implementation: Implementation { method: (*method).into(), variant: String::new() },
+        settings: RunSettings::preset(method),
+        ..run(Experiment::Budget, "scene:a", 1000, 10.0, *rmse)
+    };
+    errors.iter().map(one).collect()
+}
+
+#[test]
+fn the_default_has_its_place_among_the_methods() {
+    let mut session = session();
+    let places = |session: &Session| {
+        let of = |standing: &Standing<'_>| {
+            let best = standing.best.run.implementation.method.clone();
+            (standing.place, standing.methods, standing.is_worst, best, standing.baselines.len())
+        };
+        standings(session).iter().map(of).collect::<Vec<_>>()
+    };
+    session.runs = methods(&[("perspective-ewa", 0.03), ("sprites", 0.01), ("pull-push", 0.02)]);
+    assert_eq!(places(&session), [(3, 3, true, "sprites".into(), 0)]);
+    // With the labels swapped, the places are.
+    session.runs = methods(&[("sprites", 0.03), ("perspective-ewa", 0.01), ("pull-push", 0.02)]);
+    assert_eq!(places(&session), [(1, 3, false, "perspective-ewa".into(), 0)]);
+    session.runs = methods(&[("perspective-ewa", 0.03), ("sprites", 0.03), ("pull-push", 0.02)]);
+    assert_eq!(places(&session), [(2, 3, true, "pull-push".into(), 0)]);
+    // Other settings are not the preset, nor the default.
+    session.runs[0].settings.lowpass = 0.25;
+    assert_eq!(places(&session), []);
+    session.runs[0] = methods(&[("perspective-ewa", 0.03)]).remove(0);
+    let faster =
+        |ms, rmse| Run { implementation: native(), ..run(Experiment::Budget, "scene:a", 1000, ms, rmse) };
+    session.runs.extend([faster(9.0, 0.01), faster(9.0, 0.025), faster(11.0, 0.01)]);
+    assert_eq!(places(&session), [(2, 3, true, "pull-push".into(), 1)]);
+    let results = Results { format: FORMAT, sessions: vec![session] };
+    check(&results);
+    let page = page(&results, CODE);
+    assert!(page.contains("2 of 3") && page.contains("is faster and more exact than every method"));
+}
+
+#[test]
+fn methods_are_not_ranked_by_errors_against_their_own_references() {
+    let mut results = plausible();
+    let session = &mut results.sessions[0];
+    session.runs = methods(&[("perspective-ewa", 0.03), ("sprites", 0.01)]);
+    assert!(page(&results, CODE).contains("Pareto front"));
+    let session = &mut results.sessions[0];
+    for run in &mut session.runs {
+        run.error.as_mut().unwrap().against = Against::OwnReference;
+    }
+    assert!(Recommendations::of(session).is_none() && standings(session).is_empty());
+    check(&results);
+    let page = page(&results, CODE);
+    assert!(
+        page.contains("Aliasing and thinning only, not truth") && page.contains("No method is recommended")
+    );
+    assert!(!page.contains("Pareto front") && !page.contains("Without options"));
+}
+
 #[test]
 fn the_page_is_complete_and_loads_nothing() {
     check(&plausible());
     let files = files(&plausible(), CODE);
-    for plot in ["time-error-torus-512-512.svg", "scaling-points-bumpy-sphere.svg", "hard-offset.svg"] {
+    for plot in ["time-error-torus-512-512-lit.svg", "scaling-points-bumpy-sphere.svg", "hard-offset.svg"] {
         assert!(files.contains_key(plot), "{plot} is not in {:?}", files.keys());
         let title = files[plot].split_once("<title").unwrap().1.split_once("</title>").unwrap().0;
         assert!(files["index.html"].contains(title));

@@ -32,7 +32,7 @@ fn depths(subject: &Subject) -> Vec<f32> {
     let options = Options { filter: Filter::Point, ..Default::default() };
     let settings = Settings::default();
     let Picture { depth, .. } =
-        truth::render(subject.surface(), &camera, &settings, SIZE, &options, &()).unwrap().picture;
+        truth::render(subject.surface().unwrap(), &camera, &settings, SIZE, &options, &()).unwrap().picture;
     depth.unwrap()
 }
 

@@ -87,6 +87,7 @@ pub fn run(experiment: Experiment, scene: &str, points: u64, ms: f64, rmse: f64)
         time: Some(time(ms)),
         ratio: None,
         error: Some(Error {
+            against: Against::Surface,
             filter: "gaussian".into(),
             truth_rms: 4e-4,
             metrics: BTreeMap::from(metrics.map(|(name, value)| (name.to_owned(), value))),

@@ -191,9 +191,24 @@ pub struct Pass {
     pub ms: Statistics,
 }
 
-/// Error of a picture against the truth.
+/// What the error of a picture is against.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Against {
+    /// The exact picture of the surface.
+    #[default]
+    Surface,
+    /// The method's own float64 reference of all points, with 64 rays a pixel: the error is of aliasing and missing points only. Errors of
+    /// different methods cannot be compared.
+    OwnReference,
+}
+
+/// Error of a picture against the truth, or what serves as such.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Error {
+    /// What it is against.
+    #[serde(default)]
+    pub against: Against,
     /// The pixel filter of the truth: `gaussian`, of a variance of 1 px², or `box`.
     pub filter: String,
     /// Root mean square of the truth's own standard error.
@@ -256,7 +271,35 @@ pub struct Memory {
     pub targets: u64,
 }
 
+/// What runs show: only their errors can be compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct View<'r> {
+    /// The scene with its parameters, without the number of points; or the file.
+    pub scene: &'r str,
+    /// Width and height, px.
+    pub size: [u32; 2],
+    /// The quantity that the picture shows.
+    pub shading: &'r str,
+}
+
 impl Run {
+    /// What it shows.
+    pub fn view(&self) -> View<'_> {
+        View { scene: &self.scene, size: self.size, shading: &self.settings.shading }
+    }
+
+    /// Whether it is a method as `surfel render --method` runs it, without further options.
+    pub fn is_preset(&self) -> bool {
+        let preset = RunSettings::preset(&self.implementation.method);
+        let own = RunSettings { shading: preset.shading.clone(), ..self.settings.clone() };
+        !self.implementation.is_baseline() && self.implementation.variant.is_empty() && own == preset
+    }
+
+    /// Whether it is what `surfel render` runs without options, but for the shading.
+    pub fn is_default(&self) -> bool {
+        self.is_preset() && self.implementation.method == Method::SPLATTING[0].name
+    }
+
     /// Median wall time, ms; none if it was not timed, or if the time is not above 0.
     pub fn ms(&self) -> Option<f64> {
         self.time.as_ref().map(|time| time.wall.median).filter(|ms| ms.is_finite() && *ms > 0.0)
@@ -270,6 +313,11 @@ impl Run {
     /// The error that budgets refer to.
     pub fn rmse(&self) -> Option<f64> {
         self.metric("rmse")
+    }
+
+    /// Whether the error is against the exact picture of the surface.
+    pub fn has_truth(&self) -> bool {
+        self.error.as_ref().is_some_and(|error| error.against == Against::Surface)
     }
 }
 

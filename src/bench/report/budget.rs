@@ -1,42 +1,72 @@
 //! Time against error.
 
-use super::page::{Page, titled};
+use super::page::{Page, title};
 use super::plot::{Kind, Line, Plot, Scale, Style};
 use crate::bench::format;
 use crate::bench::group::{distinct, grouped};
 use crate::bench::recommendations::{Candidate, candidates, front};
-use crate::bench::record::{Experiment, Session};
+use crate::bench::record::{Experiment, Run, Session};
 use maud::{Markup, html};
 use std::io;
 
-/// A plot per scene: a line per implementation over its numbers of points, and the Pareto front of all.
+/// A plot per scene, size and shading: a line per implementation over its numbers of points, and the Pareto front of all where the surface is
+/// known.
 pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
-    let runs = session.runs.iter().filter(|run| run.experiment == Experiment::Budget);
-    let mut plots = Vec::new();
-    for ((scene, size), runs) in grouped(runs, |run| (&run.scene, run.size)) {
-        let candidates = candidates(runs);
-        if !candidates.is_empty() {
-            let axes = [("time of a frame, ms", Scale::Log), ("RMSE, linear light", Scale::Log)];
-            let name = format!("time-error-{}-{}", format::scene(scene), format::size(size));
-            plots.push(page.plot(Plot::of(name, titled(scene, size), axes, lines(page, &candidates)))?);
-        }
-    }
-    Ok((!plots.is_empty()).then(|| html! {
+    let exact = plots(page, session, true)?;
+    let own = plots(page, session, false)?;
+    let any = !exact.is_empty() || !own.is_empty();
+    Ok(any.then(|| html! {
         p {
             "Lower left is better. A line joins the runs of a method over the number of points, with the settings of least error for "
-            "each number. Other markers are its other settings: hollow on the Pareto front, pale elsewhere. The grey band is the Pareto "
-            "front of all methods, labelled with numbers of points. Dashed lines are the CPU baseline, which is no method."
+            "each number. Pale markers are its other settings. Rings mark what "
+            code { "surfel render" } " draws without options, but for the shading. Dashed lines are the CPU baseline, which is no method."
         }
-        div.plots { @for plot in &plots { (plot) } }
+        @if !exact.is_empty() {
+            p {
+                "The grey band is the Pareto front of all methods, labelled with numbers of points. Hollow markers are other settings on it."
+            }
+            div.plots { @for plot in &exact { (plot) } }
+        }
+        @if !own.is_empty() {
+            h3 { "Aliasing and thinning only, not truth" }
+            p {
+                "The surface of these points is unknown. Each method is compared with its own float64 reference of all points at 64 rays a "
+                "pixel: what it would show without aliasing and without leaving out points. A method that is wrong everywhere has no error "
+                "here, so that the errors of different methods say nothing about each other. Compare a line with itself."
+            }
+            div.plots { @for plot in &own { (plot) } }
+        }
     }))
 }
 
-fn lines(page: &Page<'_>, candidates: &[Candidate<'_>]) -> Vec<Line> {
+/// The plots of runs against exact pictures, or against the methods' own references.
+fn plots(page: &mut Page<'_>, session: &Session, exact: bool) -> io::Result<Vec<Markup>> {
+    let compared = |run: &&Run| run.experiment == Experiment::Budget && run.has_truth() == exact;
+    let error = if exact { "RMSE, linear light" } else { "RMSE against the own reference" };
+    let mut plots = Vec::new();
+    for (view, runs) in grouped(session.runs.iter().filter(compared), Run::view) {
+        let candidates = candidates(runs);
+        if !candidates.is_empty() {
+            let axes = [("time of a frame, ms", Scale::Log), (error, Scale::Log)];
+            let name = format!("time-error-{}", title(&view));
+            plots.push(page.plot(Plot::of(name, title(&view), axes, lines(page, &candidates, exact)))?);
+        }
+    }
+    Ok(plots)
+}
+
+fn lines(page: &Page<'_>, candidates: &[Candidate<'_>], exact: bool) -> Vec<Line> {
     let methods: Vec<Candidate> =
-        candidates.iter().filter(|o| !o.run.implementation.is_baseline()).copied().collect();
+        candidates.iter().filter(|o| exact && !o.run.implementation.is_baseline()).copied().collect();
     let best = front(&methods);
-    let band = Style { kind: Kind::Band, ..Style::default() };
-    let mut lines = vec![Line { notes: counts(&best), ..Line::new("Pareto front", band, places(&best)) }];
+    let mut lines = Vec::new();
+    if exact {
+        let band = Style { kind: Kind::Band, ..Style::default() };
+        lines.push(Line { notes: counts(&best), ..Line::new("Pareto front", band, places(&best)) });
+    }
+    let default: Vec<_> = candidates.iter().filter(|candidate| candidate.run.is_default()).copied().collect();
+    let ring = Style { kind: Kind::Ring, ..Style::default() };
+    lines.extend((!default.is_empty()).then(|| Line::new("without options", ring, places(&default))));
     for implementation in distinct(candidates.iter().map(|candidate| &candidate.run.implementation)) {
         let own: Vec<Candidate> =
             candidates.iter().filter(|o| o.run.implementation == *implementation).copied().collect();

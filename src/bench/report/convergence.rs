@@ -1,6 +1,6 @@
 //! Error against the number of points: where it stops falling, and the residual error.
 
-use super::page::{Page, titled};
+use super::page::{Page, title};
 use super::plot::{Line, Plot, Scale, Style};
 use crate::bench::convergence::{
     Convergence, ErrorAt, SHARE, SLOPE, convergence, errors_by_points, residual,
@@ -16,15 +16,16 @@ const SHOWN: f64 = 1e-3;
 
 /// A plot per scene, of the settings that were measured with the most numbers of points, and its evaluation.
 pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
-    let compared = |run: &&Run| run.experiment == Experiment::Budget && run.rmse().is_some();
+    let compared =
+        |run: &&Run| run.experiment == Experiment::Budget && run.rmse().is_some() && run.has_truth();
     let runs = session.runs.iter().filter(compared);
     let mut plots = Vec::new();
-    for ((scene, size), runs) in grouped(runs, |run| (&run.scene, run.size)) {
+    for (view, runs) in grouped(runs, Run::view) {
         if let Some((implementation, setting, runs)) = most_points(&runs) {
             let axes = [("points", Scale::Log), ("RMSE and its terms, linear light", Scale::Log)];
-            let name = format!("error-points-{}-{}", format::scene(scene), format::size(size));
+            let name = format!("error-points-{}", title(&view));
             let largest = runs.iter().filter_map(|run| run.rmse()).fold(0.0, f64::max);
-            let plot = Plot::of(name, titled(scene, size), axes, lines(&runs)).above(SHOWN * largest);
+            let plot = Plot::of(name, title(&view), axes, lines(&runs)).above(SHOWN * largest);
             let plot = page.plot(plot)?;
             let how = format::selected_settings(setting, [true, true, true, true, false, false, false]);
             plots.push(html! { div {

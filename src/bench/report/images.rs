@@ -1,6 +1,6 @@
 //! Images beside the truth and the perceived difference.
 
-use super::page::{Page, titled};
+use super::page::{Page, title};
 use crate::bench::format;
 use crate::bench::record::{Experiment, Images, Run, Session};
 use maud::{Markup, html};
@@ -16,11 +16,11 @@ pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
     Ok((!all.is_empty()).then(|| html! {
         p {
             "From left to right: the truth, the picture, and FLIP's map of the perceived difference, from black (none) through red to pale "
-            "yellow (most)."
+            "yellow (most). Where the surface is unknown, the method's own float64 reference at 64 rays a pixel takes the place of the truth."
         }
         @for &(index, images) in &all {
             figure.images {
-                div.row { @for (name, png) in pictures(images) {
+                div.row { @for (name, png) in pictures(images, is_own(session, index)) {
                     img src={ "data:image/png;base64," (png) } alt={ (images.title) ": " (name) };
                 } }
                 figcaption { (words(images, session.runs.iter().filter(|run| run.images == Some(index)))) }
@@ -29,15 +29,21 @@ pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
     }))
 }
 
-fn pictures(images: &Images) -> [(&'static str, &str); 3] {
-    [("the truth", &images.truth), ("the picture", &images.rendered), ("FLIP's map", &images.flip)]
+/// Whether the images of this index are of a run that has no truth.
+fn is_own(session: &Session, index: usize) -> bool {
+    session.runs.iter().any(|run| run.images == Some(index) && !run.has_truth())
+}
+
+fn pictures(images: &Images, is_own: bool) -> [(&'static str, &str); 3] {
+    let truth = if is_own { "the method's own reference" } else { "the truth" };
+    [(truth, &images.truth), ("the picture", &images.rendered), ("FLIP's map", &images.flip)]
 }
 
 /// The runs that the images belong to, or the title if there are none.
 fn words<'r>(images: &Images, runs: impl Iterator<Item = &'r Run>) -> Markup {
     let runs: Vec<&Run> = runs.collect();
     html! {
-        @for run in &runs { strong { (titled(&run.scene, run.size)) } ": " (caption(run)) ". " }
+        @for run in &runs { strong { (title(&run.view())) } ": " (caption(run)) ". " }
         @if runs.is_empty() { strong { (images.title) } }
     }
 }
@@ -51,6 +57,9 @@ fn caption(run: &Run) -> String {
     let metrics = [("rmse", "RMSE"), ("flip", "FLIP"), ("iou", "IoU")];
     let known = metrics.iter().filter_map(|(name, label)| Some((label, run.metric(name)?)));
     words.extend(known.map(|(label, value)| format!("{label} {}", format::significant(value, 3))));
+    if !run.has_truth() {
+        words.push("against its own reference".into());
+    }
     words.extend(run.ms().map(|ms| format!("{} ms", format::ms(ms))));
     words.join(", ")
 }

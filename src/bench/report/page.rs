@@ -7,7 +7,7 @@ use super::{
 };
 use crate::bench::format;
 use crate::bench::group::distinct;
-use crate::bench::record::{Implementation, Results, Session};
+use crate::bench::record::{Implementation, Results, Session, View};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::io;
 
@@ -167,6 +167,11 @@ impl<'a> Page<'a> {
 fn slug(name: &str) -> String {
     let words = name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
     words.collect::<Vec<_>>().join("-").to_lowercase()
+}
+
+/// A scene, a size and a shading, as a title.
+pub fn title(View { scene, size, shading }: &View<'_>) -> String {
+    format!("{}, {shading}", titled(scene, *size))
 }
 
 /// A scene and a size, as a title.

@@ -1,19 +1,23 @@
 //! Summary: the best setting for each budget of time and of error.
 
-use super::page::{Page, titled};
+use super::page::{Page, title};
 use crate::bench::format;
 use crate::bench::recommendations::{Candidate, Column, Recommendations, within_error, within_time};
 use crate::bench::record::{Run, RunSettings, Session};
+use crate::bench::standings::{Standing, standings};
+use crate::settings::methods::Method;
 use maud::{Markup, html};
 use std::io;
 
-/// Two tables: rows are budgets, columns are scenes.
+/// The default's standings, and two tables: rows are budgets, columns are scenes.
 pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
-    let Some(recommendations) = Recommendations::of(session) else { return Ok(None) };
+    let Some(recommendations) = Recommendations::of(session) else { return Ok(unranked(session)) };
+    let standings = standings(session);
     let Recommendations { columns, times, errors } = &recommendations;
     let time = |budget: f64| format!("{} ms", format::ms(budget));
     let error = |budget: f64| format::significant(budget, 2);
     Ok(Some(html! {
+        (default_table(&standings))
         p.lead {
             "The best of the methods' runs on the Pareto front: no other run is both faster and more exact. "
             @if multiples(session) { "× is the time relative to the CPU baseline, a plain native renderer. " }
@@ -25,6 +29,57 @@ pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
         h3 { "Least time within an error budget" }
         (table("RMSE", columns, errors, error, |column, rmse| within_error(&column.front, rmse), false))
     }))
+}
+
+/// Runs whose errors cannot be compared: no method is recommended.
+fn unranked(session: &Session) -> Option<Markup> {
+    let any = session.runs.iter().any(|run| run.rmse().is_some() && !run.has_truth());
+    any.then(|| html! {
+        p.lead {
+            "No method is recommended: the surfaces of these points are unknown, so that errors of different methods cannot be compared. Give "
+            "the mesh that the points were sampled from by " code { "--truth" } "."
+        }
+    })
+}
+
+/// What `surfel render` draws without options, among all methods.
+fn default_table(standings: &[Standing<'_>]) -> Markup {
+    html! { @if !standings.is_empty() {
+        h3 { "Without options" }
+        p {
+            code { (Method::SPLATTING[0].name) } " is what " code { "surfel render" } " draws without options. Each method as its preset, by "
+            "RMSE, at the greatest number of points."
+        }
+        div.scroll { table.standings {
+            thead { tr {
+                th scope="col" { "scene" } th scope="col" { "points" } th scope="col" { "place" } th scope="col" { "RMSE" }
+                th scope="col" { "ms a frame" } th scope="col" { "least RMSE" }
+            } }
+            tbody { @for standing in standings { (standing_row(standing)) } }
+        } }
+    } }
+}
+
+fn standing_row(standing: &Standing<'_>) -> Markup {
+    let Standing { view, points, default, place, methods, best, is_worst, baselines } = standing;
+    html! {
+        tr.worst[*is_worst] {
+            th scope="row" { (title(view)) }
+            td.number { (format::count(*points)) }
+            td { strong { (place) " of " (methods) } @if *is_worst { ", the worst" } }
+            td.number { (format::significant(default.rmse, 3)) }
+            td.number { (format::ms(default.ms)) }
+            td {
+                (format::significant(best.rmse, 3)) " by " (best.run.implementation.label()) " in " (format::ms(best.ms)) " ms"
+                @for baseline in baselines {
+                    div {
+                        strong { (baseline.run.implementation.label()) " is faster and more exact than every method" }
+                        ": RMSE " (format::significant(baseline.rmse, 3)) " in " (format::ms(baseline.ms)) " ms"
+                    }
+                }
+            }
+        }
+    }
 }
 
 /// Low-pass filter, cut-off, widening, ε, culling and α; the shading is the same for all runs of a scene.
@@ -43,7 +98,7 @@ fn table<'c, 'a>(
         div.scroll { table.summary {
             thead { tr {
                 th scope="col" { "budget, " (unit) }
-                @for column in columns { th scope="col" { (titled(column.scene, column.size)) } }
+                @for column in columns { th scope="col" { (title(&column.view)) } }
             } }
             tbody { @for budget in budgets { tr {
                 th scope="row" { "≤ " (name(*budget)) }

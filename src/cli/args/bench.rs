@@ -1,25 +1,29 @@
 //! Options of `surfel bench`.
 
 use super::DeviceArgs;
-use crate::cli::values::{one_of, size};
+use crate::cli::values::{method, one_of, size};
 use clap::Args;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use surfel::bench::Suite;
+use surfel::settings::methods::Method;
 
 /// Options of `surfel bench`.
 #[derive(Args, Debug)]
 pub struct Bench {
-    /// PLY files with triangles, or built-in scenes: each is measured at several densities
+    /// Files, or built-in scenes: each is measured by every method at several densities
     #[arg(value_name = "INPUT")]
     pub inputs: Vec<OsString>,
-    /// PLY file with the triangles that the points of INPUT were sampled from [default: those of INPUT]
+    /// File with the triangles that the points of INPUT were sampled from [default: those of INPUT; without any, each method's own float64 reference of all points]
     #[arg(long, value_name = "MESH", requires = "inputs")]
     pub truth: Option<PathBuf>,
     /// Numbers of points of INPUT [default: from 10000 to 1000000, at most all]
     #[arg(long, value_name = "N,…", value_delimiter = ',', requires = "inputs", value_parser = clap::value_parser!(u64).range(1..))]
     pub points: Vec<u64>,
-    /// Size of INPUT's pictures, px [default: 768x768]
+    /// Methods that render INPUT [default: all]
+    #[arg(long, value_name = "METHOD,…", value_delimiter = ',', requires = "inputs", value_parser = method())]
+    pub method: Vec<Method>,
+    /// Size of INPUT's pictures, px [default: 768x768; 384x384 without triangles]
     #[arg(long, value_name = "WxH", value_parser = size, requires = "inputs", allow_hyphen_values = true)]
     pub size: Option<[u32; 2]>,
     /// Suites to measure [default: quick, unless INPUT or --from is given]

@@ -25,6 +25,7 @@ mod mesh;
 mod options;
 mod pixel;
 mod sums;
+mod supersampled;
 #[cfg(test)]
 mod tests;
 mod traceable;
@@ -33,6 +34,7 @@ pub use cache::Cache;
 pub use eye::{Eye, SurfaceHit};
 pub use mesh::Mesh;
 pub use options::{Filter, MOST_SAMPLES, MOST_VARIANCE, Options};
+pub use supersampled::{MOST_SUPERSAMPLED, supersampled};
 pub use traceable::{Hit, Traceable};
 
 use crate::error::{Error, Result};

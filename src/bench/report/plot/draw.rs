@@ -60,7 +60,7 @@ fn paint(plot: &Plot, legend: &Legend, backend: SVGBackend<'_>) -> Drawn {
     for limit in &plot.limits {
         draw_limit(&mut chart, &root, limit)?;
     }
-    for kind in [Kind::Band, Kind::Faint, Kind::Joined, Kind::Loose] {
+    for kind in [Kind::Band, Kind::Faint, Kind::Joined, Kind::Loose, Kind::Ring] {
         for line in plot.lines.iter().rev().filter(|line| line.style.kind == kind) {
             join(&mut chart, line)?;
             for (x, y) in known(line).map(|point| chart.backend_coord(&point)) {
@@ -138,7 +138,7 @@ fn join(chart: &mut Chart<'_, '_>, line: &Line) -> Drawn {
     let colour = line.style.rgb();
     let fine = FINE as u32;
     match (line.style.kind, line.style.dashed) {
-        (Kind::Faint | Kind::Loose, _) => Ok(()),
+        (Kind::Faint | Kind::Loose | Kind::Ring, _) => Ok(()),
         (Kind::Band, _) => {
             let style = GREY.mix(0.28).stroke_width(9 * fine);
             chart.draw_series(LineSeries::new(known(line), style)).map(drop)
@@ -162,6 +162,11 @@ pub(super) fn mark(root: &Root<'_>, [x, y]: [i32; 2], style: &Style) -> Drawn {
     };
     match style.kind {
         Kind::Band => Ok(()),
+        Kind::Ring => {
+            let circle =
+                Circle::new((x, y), 2.0 * RADIUS * f64::from(FINE), INK.stroke_width(2 * FINE as u32));
+            root.draw(&circle)
+        }
         Kind::Faint => root.draw(&shape(0.7 * RADIUS, style.rgb().mix(0.4))),
         Kind::Joined | Kind::Loose => {
             root.draw(&shape(1.3 * RADIUS, WHITE.mix(1.0)))?;

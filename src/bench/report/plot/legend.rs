@@ -70,7 +70,7 @@ fn sample(root: &Root<'_>, look: Result<Style, bool>, [x, y]: [i32; 2]) -> Drawn
     };
     match (style.kind, style.dashed) {
         (Kind::Band, _) => line([left, right], GREY.mix(0.28).stroke_width(9 * fine))?,
-        (Kind::Faint | Kind::Loose, _) => {}
+        (Kind::Faint | Kind::Loose | Kind::Ring, _) => {}
         (Kind::Joined, false) => line([left, right], style.rgb().stroke_width(2 * fine))?,
         (Kind::Joined, true) => {
             for start in [left, right - 6 * FINE] {

@@ -51,6 +51,8 @@ pub enum Kind {
     Faint,
     /// A broad pale band without markers, behind all else.
     Band,
+    /// Rings around markers of other lines.
+    Ring,
 }
 
 impl Style {

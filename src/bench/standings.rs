@@ -1,0 +1,59 @@
+//! Standings: the place of the default method among all methods, where the surface is known.
+
+use super::group::{distinct, grouped};
+use super::recommendations::{Candidate, candidates};
+use super::record::{Experiment, Run, Session, View};
+
+/// The methods at one number of points, each as its preset.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Standing<'a> {
+    /// What the runs show.
+    pub view: View<'a>,
+    /// Number of points: the greatest that the default method and another one rendered.
+    pub points: u64,
+    /// The default method.
+    pub default: Candidate<'a>,
+    /// Its place by error, from 1; methods of equal error share one.
+    pub place: usize,
+    /// Number of methods.
+    pub methods: usize,
+    /// The method of least error.
+    pub best: Candidate<'a>,
+    /// Whether none has a greater error than the default method.
+    pub is_worst: bool,
+    /// CPU baselines that are both faster and more exact than every method.
+    pub baselines: Vec<Candidate<'a>>,
+}
+
+/// Standings of every scene, size and shading, in the order of the runs.
+pub fn standings(session: &Session) -> Vec<Standing<'_>> {
+    let compared = |run: &&Run| run.experiment == Experiment::Budget && run.has_truth();
+    let groups = grouped(session.runs.iter().filter(compared), Run::view);
+    groups.into_iter().filter_map(|(view, runs)| standing(view, &runs)).collect()
+}
+
+fn standing<'a>(view: View<'a>, runs: &[&'a Run]) -> Option<Standing<'a>> {
+    let mut densities = distinct(runs.iter().map(|run| run.points));
+    densities.sort_unstable();
+    densities.into_iter().rev().find_map(|points| {
+        let own = candidates(runs.iter().copied().filter(|run| run.points == points));
+        let methods: Vec<_> = own.iter().filter(|candidate| candidate.run.is_preset()).copied().collect();
+        let default = methods.iter().copied().find(|candidate| candidate.run.is_default())?;
+        let best = methods.iter().copied().min_by(|a, b| a.rmse.total_cmp(&b.rmse))?;
+        let better = methods.iter().filter(|candidate| candidate.rmse < default.rmse).count();
+        let baselines = own.iter().filter(|candidate| candidate.run.implementation.is_baseline());
+        let beats = |baseline: &&Candidate<'_>| {
+            methods.iter().all(|method| baseline.ms < method.ms && baseline.rmse < method.rmse)
+        };
+        (methods.len() > 1).then(|| Standing {
+            view,
+            points,
+            default,
+            place: better + 1,
+            methods: methods.len(),
+            best,
+            is_worst: methods.iter().all(|candidate| candidate.rmse <= default.rmse),
+            baselines: baselines.filter(beats).copied().collect(),
+        })
+    })
+}
