@@ -1,8 +1,8 @@
 //! `surfel compare`.
 
 use super::args::Compare;
-use super::files;
 use super::number::significant;
+use super::{compare_frames, files};
 use serde_json::{Map, Value, json};
 use std::ffi::OsString;
 use std::fmt::Write;
@@ -14,6 +14,9 @@ use surfel::{Error, Result};
 
 /// Compares two pictures; returns a line for each limit that is violated. Outputs are checked before anything is read.
 pub fn run(args: &Compare) -> Result<Vec<String>> {
+    if args.frames {
+        return compare_frames::run(args, &options(args));
+    }
     check_outputs(args)?;
     let [picture, truth] = [&args.picture, &args.truth].map(|name| read(Path::new(name)));
     let (picture, truth) = (picture?, truth?);

@@ -9,9 +9,58 @@ use surfel::{Error, Result};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
     /// The metric.
-    pub metric: Metric,
+    pub metric: Limited,
     /// The worst value that passes.
     pub value: f64,
+}
+
+/// A metric that can have a limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Limited {
+    /// Of a picture; of several, the worst one.
+    Picture(Metric),
+    /// [Flicker](surfel::verify::metrics::flicker) of frames.
+    Flicker,
+    /// The largest flicker around a frame.
+    Popping,
+}
+
+impl Limited {
+    /// Names of the metrics of which less, or more, is better.
+    fn names(better: Better) -> Vec<&'static str> {
+        let fitting = Metric::ALL.iter().copied().filter(|metric| metric.better() == better);
+        let of_frames = [Self::Flicker, Self::Popping].map(Self::name);
+        let of_frames = of_frames.into_iter().filter(|_| better == Better::Less);
+        fitting.map(Choice::name).chain(of_frames).collect()
+    }
+
+    fn named(name: &str) -> Option<Self> {
+        let of_frames = [Self::Flicker, Self::Popping].into_iter().find(|metric| metric.name() == name);
+        of_frames.or_else(|| Metric::named(name).map(Self::Picture))
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Picture(metric) => metric.name(),
+            Self::Flicker => "flicker",
+            Self::Popping => "popping",
+        }
+    }
+
+    fn better(self) -> Better {
+        match self {
+            Self::Picture(metric) => metric.better(),
+            Self::Flicker | Self::Popping => Better::Less,
+        }
+    }
+
+    fn needs(self) -> &'static str {
+        match self {
+            Self::Picture(metric) => metric.needs(),
+            Self::Flicker | Self::Popping => "--frames",
+        }
+    }
 }
 
 /// Parses `METRIC=VALUE` for a metric of which less is better.
@@ -25,14 +74,11 @@ pub fn below(text: &str) -> Result<Limit, String> {
 }
 
 fn parse(text: &str, better: Better) -> Result<Limit, String> {
-    let choice = || {
-        let fitting = Metric::ALL.iter().copied().filter(|metric| metric.better() == better);
-        fitting.map(Choice::name).collect::<Vec<_>>().join(", ")
-    };
+    let choice = || Limited::names(better).join(", ");
     let (name, value) =
         text.split_once('=').ok_or_else(|| format!("give METRIC=VALUE, METRIC one of {}", choice()))?;
     let metric =
-        Metric::named(name).ok_or_else(|| format!("there is no metric {name}: give one of {}", choice()))?;
+        Limited::named(name).ok_or_else(|| format!("there is no metric {name}: give one of {}", choice()))?;
     if metric.better() != better {
         return Err(match better {
             Better::Less => format!("of {name} more is better: use --fail-below"),
@@ -44,13 +90,24 @@ fn parse(text: &str, better: Better) -> Result<Limit, String> {
 }
 
 impl Limit {
-    /// Describes the violation of the limit, if there is one.
+    /// Describes the violation of the limit by a picture, if there is one.
     ///
     /// # Errors
     /// [`Error::Usage`] if the metric was not measured, which does not pass.
     pub fn violation(&self, measured: &Measured) -> Result<Option<String>> {
+        match self.metric {
+            Limited::Picture(metric) => self.violation_by(measured.value(metric)),
+            Limited::Flicker | Limited::Popping => self.violation_by(None),
+        }
+    }
+
+    /// Describes the violation of the limit by a value, if there is one.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] without a value.
+    pub fn violation_by(&self, found: Option<f64>) -> Result<Option<String>> {
         let name = self.metric.name();
-        let Some(found) = measured.value(self.metric) else {
+        let Some(found) = found else {
             return Err(Error::Usage(format!("{name} cannot be measured: it needs {}", self.metric.needs())));
         };
         let (crossed, side) = match self.metric.better() {
@@ -67,8 +124,9 @@ mod tests {
 
     #[test]
     fn limits_are_read_or_refused() {
-        assert_eq!(above("rmse=0.5"), Ok(Limit { metric: Metric::Rmse, value: 0.5 }));
-        assert_eq!(below("psnr= -1e1"), Ok(Limit { metric: Metric::Psnr, value: -10.0 }));
+        assert_eq!(above("rmse=0.5"), Ok(Limit { metric: Limited::Picture(Metric::Rmse), value: 0.5 }));
+        assert_eq!(above("flicker=0.5"), Ok(Limit { metric: Limited::Flicker, value: 0.5 }));
+        assert_eq!(below("psnr= -1e1"), Ok(Limit { metric: Limited::Picture(Metric::Psnr), value: -10.0 }));
         for (text, cause) in [
             ("rmse", "METRIC=VALUE"),
             ("error=1", "no metric error: give one of rmse, rmse-srgb, flip"),
@@ -87,12 +145,15 @@ mod tests {
         let flip = surfel::verify::metrics::flip::Map { size: [0, 0], values: vec![] };
         let values = vec![(Metric::Rmse, 0.5), (Metric::Psnr, f64::INFINITY), (Metric::Ssim, 0.25)];
         let measured = Measured { values, flip, picture_covers: 0, truth_covers: 0 };
-        let of = |metric, value| Limit { metric, value }.violation(&measured);
+        let of = |metric, value| Limit { metric: Limited::Picture(metric), value }.violation(&measured);
         assert_eq!(of(Metric::Rmse, 0.5).unwrap(), None);
         assert_eq!(of(Metric::Rmse, 0.25).unwrap().unwrap(), "rmse is 0.5, above 0.25");
         assert_eq!(of(Metric::Psnr, 1e9).unwrap(), None);
         assert_eq!(of(Metric::Ssim, 0.25).unwrap(), None);
         assert_eq!(of(Metric::Ssim, 0.75).unwrap().unwrap(), "ssim is 0.25, below 0.75");
         assert!(of(Metric::DepthMax, 1.0).unwrap_err().to_string().contains("needs depths in both"));
+        let flicker = Limit { metric: Limited::Flicker, value: 1.0 };
+        assert!(flicker.violation(&measured).unwrap_err().to_string().contains("needs --frames"));
+        assert_eq!(flicker.violation_by(Some(2.0)).unwrap().unwrap(), "flicker is 2, above 1");
     }
 }

@@ -6,6 +6,8 @@ mod bench;
 mod camera;
 #[cfg(feature = "metrics")]
 mod compare;
+#[cfg(feature = "metrics")]
+mod compare_frames;
 mod convert;
 mod devices;
 mod exit;
@@ -19,6 +21,7 @@ mod methods;
 mod needs;
 #[cfg(feature = "metrics")]
 mod number;
+mod pattern;
 mod progress;
 mod rasterizers;
 mod reference;

@@ -160,6 +160,51 @@ fn the_report_may_go_to_standard_output() {
 }
 
 #[test]
+fn frames_have_flicker_and_the_worst_pop() {
+    let program = Program::new();
+    // The truth brightens evenly. The picture follows, and is too bright in frame 5.
+    for number in 2..9u8 {
+        disc(&program, &format!("b{number:02}.png"), 12.0, 100 + 5 * number);
+        disc(
+            &program,
+            &format!("a{number:02}.png"),
+            12.0,
+            100 + 5 * number + if number == 5 { 90 } else { 0 },
+        );
+    }
+    let run = program.run("compare --frames a%02d.png b%02d.png --json out.json --fail-above popping=10");
+    assert!(run.text().contains("frames 2 to 8\n"), "{}", run.text());
+    assert!(value(run.text(), "rmse").parse::<f64>().unwrap() > 0.0);
+    let report = json(&program, "out.json");
+    assert_eq!(report["popping"]["frame"], 5);
+    assert_eq!(
+        (&report["metrics"]["rmse"]["worst_frame"], report["frames"].as_array().unwrap().len()),
+        (&5.into(), 7)
+    );
+    // Second differences around frames 4, 5 and 6 are 1, −2 and 1 times the error; the mean of five squares.
+    let number = |value: &Value| value.as_f64().unwrap();
+    let ratio = number(&report["flicker"]) / number(&report["popping"]["value"]);
+    assert!((ratio - (6f64 / 5.0 / 4.0).sqrt()).abs() < 1e-9, "{ratio}");
+    assert!(report["frames"][0]["flicker"].is_null() && number(&report["frames"][3]["flicker"]) > 0.0);
+    let run = program.run(
+        "compare --frames a%02d.png b%02d.png --quiet --fail-above popping=0.01 --fail-above rmse=0.001",
+    );
+    assert!(run.code == 4 && run.err.contains("popping is") && run.err.contains("rmse is"), "{}", run.err);
+    let refused = program.run("compare a02.png b02.png --fail-above flicker=1");
+    assert!(refused.code == 2 && refused.err.contains("needs --frames"), "{}", refused.err);
+    for (command, cause) in [
+        ("compare --frames a.png b%02d.png", "%04d"),
+        ("compare --frames c%02d.png d%02d.png", "there are no frames c00.png"),
+    ] {
+        let run = program.run(command);
+        assert!(run.code == 2 && run.err.contains(cause), "{}", run.err);
+    }
+    std::fs::remove_file(program.path("b08.png")).unwrap();
+    let run = program.run("compare --frames a%02d.png b%02d.png");
+    assert!(run.code != 0 && run.err.contains("b08.png"), "{}", run.err);
+}
+
+#[test]
 fn unusable_pictures_are_named() {
     let program = Program::new();
     disc(&program, "a.png", 12.0, 200);

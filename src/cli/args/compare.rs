@@ -15,6 +15,9 @@ pub struct Compare {
     /// The ground truth: a PNG or EXR file of the same size
     #[arg(value_name = "B")]
     pub truth: OsString,
+    /// Compares numbered frames, and measures flicker and popping along them: A and B are patterns such as a/%04d.exr
+    #[arg(long, conflicts_with = "map")]
+    pub frames: bool,
     /// Exits with code 4 if METRIC is above VALUE, for example flip=0.05; may be repeated. For metrics of which less is better
     #[arg(long, value_name = "METRIC=VALUE", value_parser = above)]
     pub fail_above: Vec<Limit>,

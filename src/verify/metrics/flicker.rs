@@ -42,7 +42,8 @@ pub struct Flicker {
     /// Errors of the last two frames, the older one first.
     last: [Vec<[f64; 3]>; 2],
     frames: usize,
-    squares: f64,
+    /// Mean squared second difference around each inner frame.
+    squares: Vec<f64>,
 }
 
 impl Flicker {
@@ -67,7 +68,8 @@ impl Flicker {
         let [before, last] = std::mem::take(&mut self.last);
         if self.frames + 1 >= FEWEST {
             let frames = before.as_flattened().iter().zip(last.as_flattened()).zip(error.as_flattened());
-            self.squares += frames.map(|((a, b), c)| (a - 2.0 * b + c).powi(2)).sum::<f64>();
+            let sum = frames.map(|((a, b), c)| (a - 2.0 * b + c).powi(2)).sum::<f64>();
+            self.squares.push(sum / error.as_flattened().len().max(1) as f64);
         }
         self.last = [last, error];
         self.size = pair.size();
@@ -84,8 +86,12 @@ impl Flicker {
             let text = format!("flicker of {} frames: give {FEWEST} or more", self.frames);
             return Err(Error::Usage(text));
         }
-        let differences = (self.frames + 1 - FEWEST) * 3 * self.last[1].len();
-        Ok((self.squares / (6 * differences) as f64).sqrt())
+        Ok((self.squares.iter().sum::<f64>() / (6 * self.squares.len()) as f64).sqrt())
+    }
+
+    /// Flicker around each inner frame, from the second to the last but one: the largest is where the picture pops.
+    pub fn values(&self) -> impl Iterator<Item = f64> {
+        self.squares.iter().map(|square| (square / 6.0).sqrt())
     }
 
     fn error(&self, pair: &Pair<'_>) -> Vec<[f64; 3]> {
