@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 type Cell = (String, String);
 
 /// One row per run: its session, settings, times, error against the truth and error against float64. Each metric has a
-/// column of its name; each pass has `pass:NAME`, `pass:NAME:min` and `pass:NAME:max`. `stale` says whether the
+/// column of its name. Times have `NAME`, `NAME:min`, `NAME:max`, and `NAME:low` and `NAME:high` of the median's interval; passes are `pass:NAME`. `stale` says whether the
 /// session's source digest differs from `code`. Times are in ms, memory in bytes.
 ///
 /// # Errors
@@ -145,16 +145,19 @@ fn time(run: &Run) -> Vec<Cell> {
     row
 }
 
-/// Median, minimum and maximum.
-fn spread(name: &str, times: Option<Statistics>) -> [Cell; 3] {
+/// Median, minimum, maximum, and the median's interval.
+fn spread(name: &str, times: Option<Statistics>) -> [Cell; 5] {
+    let interval = times.and_then(|times| times.interval);
     [
         (name.to_owned(), number(times.map(|times| times.median))),
         (format!("{name}:min"), number(times.map(|times| times.min))),
         (format!("{name}:max"), number(times.map(|times| times.max))),
+        (format!("{name}:low"), number(interval.map(|[low, _]| low))),
+        (format!("{name}:high"), number(interval.map(|[_, high]| high))),
     ]
 }
 
-fn pass(run: &Run, name: &str) -> [Cell; 3] {
+fn pass(run: &Run, name: &str) -> [Cell; 5] {
     let times = run.time.as_ref().and_then(|time| time.passes.iter().find(|pass| pass.name == name));
     spread(&format!("pass:{name}"), times.map(|pass| pass.ms))
 }

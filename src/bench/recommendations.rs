@@ -24,6 +24,8 @@ pub struct Column<'a> {
     pub view: View<'a>,
     /// The [`front`] of its runs.
     pub front: Vec<Candidate<'a>>,
+    /// All of its runs.
+    pub all: Vec<Candidate<'a>>,
 }
 
 /// Recommendations of one session; times of other sessions are of other machines.
@@ -44,12 +46,42 @@ impl<'a> Recommendations<'a> {
             run.experiment == Experiment::Budget && !run.implementation.is_baseline() && run.has_truth()
         };
         let groups = grouped(session.runs.iter().filter(methods), Run::view);
-        let column = |(view, runs): (_, Vec<&'a Run>)| Column { view, front: front(&candidates(runs)) };
+        let column = |(view, runs): (_, Vec<&'a Run>)| {
+            let all = candidates(runs);
+            Column { view, front: front(&all), all }
+        };
         let mut columns: Vec<Column<'a>> = groups.into_iter().map(column).collect();
         columns.retain(|column| !column.front.is_empty());
         let best = || columns.iter().flat_map(|column| &column.front);
         let (times, errors) = (budgets(best().map(|o| o.ms)), budgets(best().map(|o| o.rmse)));
         (!columns.is_empty()).then_some(Self { columns, times, errors })
+    }
+}
+
+impl<'a> Candidate<'a> {
+    /// Whether the 95 % intervals of both median times overlap: which one is faster is unknown.
+    pub fn is_as_fast_as(&self, other: &Self) -> bool {
+        let interval = |run: &Run| run.time.as_ref().and_then(|time| time.wall.interval);
+        match (interval(self.run), interval(other.run)) {
+            (Some([low, high]), Some([other_low, other_high])) => low <= other_high && other_low <= high,
+            _ => false,
+        }
+    }
+}
+
+impl<'a> Column<'a> {
+    /// Runs by other methods with an RMSE of at most `rmse` that may be as fast as `best`, the fastest one of each.
+    pub fn as_fast(&self, best: &Candidate<'a>, rmse: f64) -> Vec<Candidate<'a>> {
+        let mut others: Vec<Candidate<'a>> = self.all.clone();
+        others.retain(|other| other.rmse <= rmse && other.is_as_fast_as(best));
+        others.sort_by(|a, b| a.ms.total_cmp(&b.ms));
+        let mut known = vec![&best.run.implementation];
+        others.retain(|other| {
+            let is_new = !known.contains(&&other.run.implementation);
+            known.push(&other.run.implementation);
+            is_new
+        });
+        others
     }
 }
 

@@ -9,7 +9,7 @@ use super::record::{Experiment, Run, Session, View};
 pub struct Standing<'a> {
     /// What the runs show.
     pub view: View<'a>,
-    /// Number of points: the greatest that the default method and another one rendered.
+    /// Number of points: of those that the default method rendered, the one that most methods did, then the greatest.
     pub points: u64,
     /// The default method.
     pub default: Candidate<'a>,
@@ -33,9 +33,8 @@ pub fn standings(session: &Session) -> Vec<Standing<'_>> {
 }
 
 fn standing<'a>(view: View<'a>, runs: &[&'a Run]) -> Option<Standing<'a>> {
-    let mut densities = distinct(runs.iter().map(|run| run.points));
-    densities.sort_unstable();
-    densities.into_iter().rev().find_map(|points| {
+    let densities = distinct(runs.iter().map(|run| run.points));
+    let all = densities.into_iter().filter_map(|points| {
         let own = candidates(runs.iter().copied().filter(|run| run.points == points));
         let methods: Vec<_> = own.iter().filter(|candidate| candidate.run.is_preset()).copied().collect();
         let default = methods.iter().copied().find(|candidate| candidate.run.is_default())?;
@@ -55,5 +54,6 @@ fn standing<'a>(view: View<'a>, runs: &[&'a Run]) -> Option<Standing<'a>> {
             is_worst: methods.iter().all(|candidate| candidate.rmse <= default.rmse),
             baselines: baselines.filter(beats).copied().collect(),
         })
-    })
+    });
+    all.max_by_key(|standing| (standing.methods, standing.points))
 }

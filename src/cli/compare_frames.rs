@@ -73,7 +73,7 @@ impl Measured {
     /// Number of the frame that pops most, and the flicker around it.
     fn popping(&self) -> (u32, f64) {
         let around = (self.first + 1..).zip(self.around.iter().copied());
-        around.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((self.first, 0.0))
+        around.min_by(|a, b| b.1.total_cmp(&a.1)).unwrap_or((self.first, 0.0))
     }
 
     /// The metrics that all frames have: mean, and worst value with its frame.
@@ -86,7 +86,8 @@ impl Measured {
             let mean = values.iter().sum::<f64>() / values.len() as f64;
             let numbered = (self.first..).zip(values);
             let worst = match metric.better() {
-                Better::Less => numbered.max_by(|a, b| a.1.total_cmp(&b.1)),
+                // The first of equal ones.
+                Better::Less => numbered.min_by(|a, b| b.1.total_cmp(&a.1)),
                 Better::More => numbered.min_by(|a, b| a.1.total_cmp(&b.1)),
             };
             Some((metric, mean, worst?))

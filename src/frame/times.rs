@@ -24,6 +24,9 @@ pub struct Statistics {
     pub min: f64,
     /// Greatest.
     pub max: f64,
+    /// The 95 % confidence interval of the median: see [`Interval`]. `None` in results of programs that did not have it.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub interval: Option<[f64; 2]>,
 }
 
 /// Median with its 95 % confidence interval.
@@ -42,11 +45,8 @@ impl Interval {
     /// Interval between two of the values, by the sign test: whatever their distribution, the median is outside with a probability of at most
     /// 5 %. Fewer than six values do not suffice: it is then from the least to the greatest. `None` without values.
     pub fn of(values: &[f64]) -> Option<Self> {
-        let mut sorted = values.to_vec();
-        sorted.sort_by(f64::total_cmp);
-        let median = Statistics::of(&sorted)?.median;
-        let out = values_outside(sorted.len());
-        Some(Self { median, low: sorted[out], high: sorted[sorted.len() - 1 - out] })
+        let Statistics { median, interval, .. } = Statistics::of(values)?;
+        interval.map(|[low, high]| Self { median, low, high })
     }
 }
 
@@ -108,7 +108,8 @@ impl Statistics {
         sorted.sort_by(f64::total_cmp);
         let (min, max) = (*sorted.first()?, *sorted.last()?);
         let median = 0.5 * (sorted[(sorted.len() - 1) / 2] + sorted[sorted.len() / 2]);
-        Some(Self { median, min, max })
+        let out = values_outside(sorted.len());
+        Some(Self { median, min, max, interval: Some([sorted[out], sorted[sorted.len() - 1 - out]]) })
     }
 }
 
@@ -117,7 +118,7 @@ impl fmt::Display for Times {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{:<16}{:>12}{:>12}{:>12}  ms", "pass", "median", "min", "max")?;
         let frame = self.frame().map(|times| ("frame (CPU)", times));
-        self.passes().chain(frame).try_for_each(|(label, Statistics { median, min, max })| {
+        self.passes().chain(frame).try_for_each(|(label, Statistics { median, min, max, .. })| {
             writeln!(f, "{label:<16}{median:>12.3}{min:>12.3}{max:>12.3}")
         })
     }
@@ -139,9 +140,15 @@ mod tests {
     #[test]
     fn the_first_of_several_frames_does_not_count() {
         let three = times(&[100, 4, 2, 9]);
-        assert_eq!(three.frame(), Some(Statistics { median: 4.0, min: 2.0, max: 9.0 }));
+        assert_eq!(
+            three.frame(),
+            Some(Statistics { median: 4.0, min: 2.0, max: 9.0, interval: Some([2.0, 9.0]) })
+        );
         let passes: Vec<_> = three.passes().collect();
-        assert_eq!(passes, [("footprint", Statistics { median: 2.0, min: 1.0, max: 4.5 })]);
+        assert_eq!(
+            passes,
+            [("footprint", Statistics { median: 2.0, min: 1.0, max: 4.5, interval: Some([1.0, 4.5]) })]
+        );
         assert_eq!(times(&[7]).frame().map(|frame| frame.max), Some(7.0));
         assert_eq!(times(&[100, 1, 2]).frame().map(|frame| frame.median), Some(1.5));
         assert_eq!(times(&[]).frame(), None);

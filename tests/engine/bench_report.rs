@@ -157,6 +157,36 @@ fn recommendations_are_by_scene_and_size_and_of_budget_runs_only() {
     assert_eq!(Recommendations::of(&session), None);
 }
 
+/// Ten per cent of work more make a method slower where intervals part, and no slower where they overlap.
+#[test]
+fn methods_whose_intervals_overlap_share_a_place() {
+    let advice = |slower: f64, spread: f64| {
+        let mut session = session();
+        session.runs = methods(&[("perspective-ewa", 0.03), ("sprites", 0.02)]);
+        for (run, ms) in session.runs.iter_mut().zip([10.0, 10.0 * slower]) {
+            let time = run.time.as_mut().unwrap();
+            (time.wall.median, time.wall.interval) = (ms, Some([(1.0 - spread) * ms, (1.0 + spread) * ms]));
+        }
+        let recommendations = Recommendations::of(&session).unwrap();
+        let column = &recommendations.columns[0];
+        let best = within_error(&column.front, 0.05).unwrap();
+        let others = column.as_fast(best, 0.05);
+        let name = |candidate: &surfel::bench::recommendations::Candidate| {
+            candidate.run.implementation.method.clone()
+        };
+        (name(best), others.iter().map(name).collect::<Vec<_>>())
+    };
+    let [ewa, sprites] = ["perspective-ewa".to_owned(), "sprites".to_owned()];
+    assert_eq!(advice(1.1, 0.02), (ewa.clone(), vec![]));
+    assert_eq!(advice(1.1, 0.06), (ewa.clone(), vec![sprites.clone()]));
+    assert_eq!(advice(0.9, 0.02), (sprites, vec![]));
+    let mut results = plausible();
+    results.sessions[0].runs = methods(&[("perspective-ewa", 0.03), ("sprites", 0.02)]);
+    results.sessions[0].runs[1].time = Some(time(10.1));
+    check(&results);
+    assert!(page(&results, CODE).contains("either: 1000 points, sprites, 10.1 ms"));
+}
+
 /// The methods, with these errors.
 fn methods(errors: &[(&str, f64)]) -> Vec<Run> {
     let one = |(method, rmse): &(&str, f64)| Run {
@@ -178,6 +208,10 @@ fn the_default_has_its_place_among_the_methods() {
         standings(session).iter().map(of).collect::<Vec<_>>()
     };
     session.runs = methods(&[("perspective-ewa", 0.03), ("sprites", 0.01), ("pull-push", 0.02)]);
+    assert_eq!(places(&session), [(3, 3, true, "sprites".into(), 0)]);
+    // More points count only if as many methods rendered them.
+    let few = methods(&[("perspective-ewa", 0.001), ("sprites", 0.002)]);
+    session.runs.extend(few.into_iter().map(|run| Run { points: 2000, ..run }));
     assert_eq!(places(&session), [(3, 3, true, "sprites".into(), 0)]);
     // With the labels swapped, the places are.
     session.runs = methods(&[("sprites", 0.03), ("perspective-ewa", 0.01), ("pull-push", 0.02)]);

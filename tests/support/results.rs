@@ -114,8 +114,12 @@ pub fn run(experiment: Experiment, scene: &str, points: u64, ms: f64, rmse: f64)
 }
 
 pub fn time(ms: f64) -> Time {
-    let spread =
-        |share: f64| Statistics { median: share * ms, min: 0.95 * share * ms, max: 1.2 * share * ms };
+    let spread = |share: f64| Statistics {
+        median: share * ms,
+        min: 0.95 * share * ms,
+        max: 1.2 * share * ms,
+        interval: Some([0.98 * share * ms, 1.03 * share * ms]),
+    };
     let passes = [("footprint", 0.1), ("visibility", 0.3), ("attribute", 0.5), ("normalize", 0.08)];
     Time {
         frames: 12,
@@ -226,7 +230,7 @@ pub fn pull_push() -> Vec<Run> {
             let times = [("project", 1e-5 * points as f64), ("pull", 0.2 * pixels), ("push", 0.8 * pixels)];
             let pass = |(name, ms): (&str, f64)| Pass {
                 name: name.into(),
-                ms: Statistics { median: ms, min: ms, max: ms },
+                ms: Statistics { median: ms, min: ms, max: ms, interval: Some([ms, ms]) },
             };
             run.time.as_mut().unwrap().passes = times.map(pass).to_vec();
         }
@@ -273,7 +277,7 @@ fn papers() -> Vec<Run> {
     }
     let single = of(Experiment::Claims, "three-passes", 100_000, 10.0, 0.06);
     let mut three = of(Experiment::Claims, "three-passes", 100_000, 25.0, 0.04);
-    three.ratio = Some(Statistics { median: 2.5, min: 2.25, max: 3.0 });
+    three.ratio = Some(Statistics { median: 2.5, min: 2.25, max: 3.0, interval: Some([2.25, 3.0]) });
     let row = of(Experiment::PaperTables, "zwicker2004 table 1", 300_000, 100.0, 0.04);
     vec![axis, ray, single, three, row]
 }

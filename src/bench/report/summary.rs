@@ -25,9 +25,14 @@ pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
             (unbroken(&format::selected_settings(&RunSettings::defaults(), NAMED))) "."
         }
         h3 { "Least error within a time budget" }
-        (table("ms a frame", columns, times, time, |column, ms| within_time(&column.front, ms), true))
+        (table("ms a frame", columns, times, time, |column, ms| {
+            within_time(&column.front, ms).map(|best| (best, Vec::new()))
+        }, true))
         h3 { "Least time within an error budget" }
-        (table("RMSE", columns, errors, error, |column, rmse| within_error(&column.front, rmse), false))
+        p { "Either: methods whose 95 % intervals of the median time overlap with that of the fastest." }
+        (table("RMSE", columns, errors, error, |column, rmse| {
+            within_error(&column.front, rmse).map(|best| (best, column.as_fast(best, rmse)))
+        }, false))
     }))
 }
 
@@ -48,7 +53,7 @@ fn default_table(standings: &[Standing<'_>]) -> Markup {
         h3 { "Without options" }
         p {
             code { (Method::SPLATTING[0].name) } " is what " code { "surfel render" } " draws without options. Each method as its preset, by "
-            "RMSE, at the greatest number of points."
+            "RMSE, at the greatest number of points that most methods rendered."
         }
         div.scroll { table.standings {
             thead { tr {
@@ -90,10 +95,10 @@ fn table<'c, 'a>(
     columns: &'c [Column<'a>],
     budgets: &[f64],
     name: impl Fn(f64) -> String,
-    best: impl Fn(&'c Column<'a>, f64) -> Option<&'c Candidate<'a>>,
+    best: impl Fn(&'c Column<'a>, f64) -> Option<(&'c Candidate<'a>, Vec<Candidate<'a>>)>,
     error_first: bool,
 ) -> Markup {
-    let mut before: Vec<Option<&Candidate>> = vec![None; columns.len()];
+    let mut before: Vec<Option<(&Candidate, Vec<Candidate>)>> = vec![None; columns.len()];
     html! {
         div.scroll { table.summary {
             thead { tr {
@@ -104,9 +109,9 @@ fn table<'c, 'a>(
                 th scope="row" { "≤ " (name(*budget)) }
                 @for (column, before) in columns.iter().zip(&mut before) {
                     @let found = best(column, *budget);
-                    @let same = found.is_some() && std::mem::replace(before, found) == found;
+                    @let same = found.is_some() && std::mem::replace(before, found.clone()) == found;
                     @match found {
-                        Some(candidate) => { td.same[same] { (cell(candidate, error_first)) } }
+                        Some((candidate, others)) => { td.same[same] { (cell(candidate, &others, error_first)) } }
                         None => { td.none { "none" } }
                     }
                 }
@@ -115,7 +120,7 @@ fn table<'c, 'a>(
     }
 }
 
-fn cell(candidate: &Candidate<'_>, error_first: bool) -> Markup {
+fn cell(candidate: &Candidate<'_>, others: &[Candidate<'_>], error_first: bool) -> Markup {
     let Candidate { run, ms, rmse } = candidate;
     let multiple = run.time.as_ref().and_then(|time| time.baseline_ratio).map(format::baseline_ratio);
     let time =
@@ -127,6 +132,9 @@ fn cell(candidate: &Candidate<'_>, error_first: bool) -> Markup {
         span { (format::count(run.points)) " points, " (run.implementation.label()) }
         @let settings = unusual(run);
         @if !settings.is_empty() { span { (settings) } }
+        @for Candidate { run, ms, .. } in others {
+            span { "either: " (format::count(run.points)) " points, " (run.implementation.label()) ", " (format::ms(*ms)) " ms" }
+        }
     }
 }
 

@@ -80,13 +80,13 @@ impl Suite {
         }
     }
 
-    /// How many frames are timed.
+    /// How many frames are timed. Fewer than six give no 95 % interval of the median.
     pub fn effort(self) -> Effort {
         match self {
-            Self::Quick => Effort { least: 3, budget: Duration::from_millis(150), ..Effort::default() },
+            Self::Quick => Effort { least: 6, budget: Duration::from_millis(150), ..Effort::default() },
             Self::Scaling => Effort { least: 3, ..Effort::default() },
             Self::Papers => Effort { least: 3, budget: Duration::from_millis(500), ..Effort::default() },
-            Self::Full => Effort { least: 5, budget: Duration::from_millis(700), ..Effort::default() },
+            Self::Full => Effort { least: 9, budget: Duration::from_millis(700), ..Effort::default() },
             _ => Effort::default(),
         }
     }
