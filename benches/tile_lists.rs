@@ -23,7 +23,7 @@ const TILE: usize = 8;
 const FAN_OUT: usize = 8;
 /// Level whose nodes are visited near to far.
 const BLOCKS: usize = 3;
-/// Splats that visibility hands to attribute.
+/// Most splats of a tile whose ids visibility records for attribute.
 const MOST_VISITED: usize = 512;
 const LANES: [usize; 3] = [8, 32, 64];
 

@@ -20,7 +20,7 @@ pub fn run(args: &Compare) -> Result<Vec<String>> {
     check_outputs(args)?;
     let [picture, truth] = [&args.picture, &args.truth].map(|name| read(Path::new(name)));
     let (picture, truth) = (picture?, truth?);
-    let pair = Pair::new(&picture, &truth).map_err(|error| name_file(error, args))?;
+    let pair = Pair::new(&picture, &truth).map_err(|error| name_file(error, [&args.picture, &args.truth]))?;
     let measured = measure(&pair, &options(args))?;
     if let Some(map) = &args.map {
         measured.flip.coloured()?.write_png(&Output::File(map.into()))?;
@@ -67,13 +67,11 @@ fn check_map(map: &OsString) -> Result<()> {
 }
 
 /// Replaces the name of a side in an error by that of its file.
-fn name_file(error: Error, args: &Compare) -> Error {
+pub fn name_file(error: Error, [picture, truth]: [&OsString; 2]) -> Error {
     let file = |name: &OsString| Path::new(name).display().to_string();
     match error {
-        Error::Input { name, cause } if name == Side::Picture.name() => {
-            Error::input(file(&args.picture), cause)
-        }
-        Error::Input { name, cause } if name == Side::Truth.name() => Error::input(file(&args.truth), cause),
+        Error::Input { name, cause } if name == Side::Picture.name() => Error::input(file(picture), cause),
+        Error::Input { name, cause } if name == Side::Truth.name() => Error::input(file(truth), cause),
         other => other,
     }
 }

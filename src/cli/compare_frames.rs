@@ -1,6 +1,7 @@
 //! `surfel compare --frames`: metrics, flicker and popping of numbered frames.
 
 use super::args::Compare;
+use super::compare::name_file;
 use super::files;
 use super::limits::{Limit, Limited};
 use super::number::significant;
@@ -61,8 +62,11 @@ fn measure_all(patterns: [&Pattern; 2], options: &Options) -> Result<Measured> {
     for number in (first..).take_while(|number| exist(*number) != [false; 2]) {
         let [name, other] = patterns.map(|pattern| pattern.file(number));
         let [picture, truth]: [Picture; 2] = [read(Path::new(&name))?, read(Path::new(&other))?];
-        let in_frame = |error: Error| error.in_input(Path::new(&name).display().to_string());
-        let pair = Pair::new(&picture, &truth).map_err(in_frame)?;
+        let named = |error| match name_file(error, [&name, &other]) {
+            Error::Usage(text) => Error::Usage(format!("{}: {text}", Path::new(&name).display())),
+            other => other,
+        };
+        let pair = Pair::new(&picture, &truth).map_err(named)?;
         flicker.add(&pair)?;
         frames.push(measure(&pair, options)?.values);
     }

@@ -199,6 +199,9 @@ fn frames_have_flicker_and_the_worst_pop() {
         let run = program.run(command);
         assert!(run.code == 2 && run.err.contains(cause), "{}", run.err);
     }
+    RgbaImage::new(7, 7).save(program.path("b08.png")).unwrap();
+    let run = program.run("compare --frames a%02d.png b%02d.png");
+    assert!(run.code != 0 && run.err.contains("a08.png: the picture is 40x40 px"), "{}", run.err);
     std::fs::remove_file(program.path("b08.png")).unwrap();
     let run = program.run("compare --frames a%02d.png b%02d.png");
     assert!(run.code != 0 && run.err.contains("b08.png"), "{}", run.err);

@@ -3,7 +3,7 @@
 use crate::support::gpu::{assert_silent, device};
 use base64::prelude::{BASE64_STANDARD, Engine as _};
 use std::f64::consts::PI;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::time::Duration;
 use surfel::bench::Suite;
@@ -199,13 +199,19 @@ fn sphere(path: &Path) {
     std::fs::write(path, text).unwrap();
 }
 
-#[test]
-fn a_scan_is_compared_with_its_mesh_at_any_density() {
-    let folder = tempfile::tempdir().unwrap();
-    let [scan, points] = ["mesh.ply", "points.ply"].map(|name| folder.path().join(name));
+/// Files of a sphere's mesh, and of its corners without triangles.
+fn mesh_and_points(folder: &Path) -> [PathBuf; 2] {
+    let [scan, points] = ["mesh.ply", "points.ply"].map(|name| folder.join(name));
     sphere(&scan);
     let bare = std::fs::read_to_string(&scan).unwrap().replace("element face 14400", "element other 14400");
     std::fs::write(&points, bare).unwrap();
+    [scan, points]
+}
+
+#[test]
+fn a_scan_is_compared_with_its_mesh_at_any_density() {
+    let folder = tempfile::tempdir().unwrap();
+    let [scan, points] = mesh_and_points(folder.path());
     let subject = Rc::new(Subject::scan(&points, Some(&scan), &()).unwrap());
     let most = subject.most_points().unwrap();
     let Some(mut runner) = runner(vec![subject.clone()]) else { return };
@@ -233,10 +239,7 @@ fn a_scan_is_compared_with_its_mesh_at_any_density() {
 #[test]
 fn points_of_an_unknown_surface_are_compared_with_their_own_reference() {
     let folder = tempfile::tempdir().unwrap();
-    let [scan, points] = ["mesh.ply", "points.ply"].map(|name| folder.path().join(name));
-    sphere(&scan);
-    let bare = std::fs::read_to_string(&scan).unwrap().replace("element face 14400", "element other 14400");
-    std::fs::write(&points, bare).unwrap();
+    let [scan, points] = mesh_and_points(folder.path());
     let subject = Rc::new(Subject::scan(&points, None, &()).unwrap());
     assert!(subject.surface().is_none() && !subject.is_coloured());
     assert!(
