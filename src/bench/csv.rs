@@ -1,6 +1,7 @@
 //! Results as CSV rows, for spreadsheets and scripts. A cell without a value is empty; no rows give an empty text
 //! without a header.
 
+use super::format;
 use super::group::distinct;
 use super::record::{Float64Error, Memory, Results, Run, Session, SweepPoint};
 use crate::error::{Error, Result};
@@ -26,7 +27,7 @@ pub fn runs(results: &Results, code: &str) -> Result<String> {
     let passes = distinct(passes.map(|pass| &*pass.name));
     let row = |(session, run): (&Session, &Run)| {
         let mut row = provenance(session, code);
-        row.extend([what(run), time(run), error(run), memory(&run.memory)].into_iter().flatten());
+        row.extend([what(run), time(session, run), error(run), memory(&run.memory)].into_iter().flatten());
         row.extend(float64_error(run.float64_error.as_ref()));
         row.extend(metrics.iter().map(|name| (name.clone(), number(run.metric(name)))));
         row.extend(passes.iter().flat_map(|name| pass(run, name)));
@@ -130,11 +131,14 @@ fn what(run: &Run) -> Vec<Cell> {
     .collect()
 }
 
-fn time(run: &Run) -> Vec<Cell> {
+fn time(session: &Session, run: &Run) -> Vec<Cell> {
     let time = run.time.as_ref();
     let mut row: Vec<Cell> = cells([
         ("frames", time.map(|time| time.frames.to_string()).unwrap_or_default()),
         ("warmup", time.map(|time| time.warmup.to_string()).unwrap_or_default()),
+        ("clock", time.map(|time| <&str>::from(time.clock).to_owned()).unwrap_or_default()),
+        ("disturbed", format::disturbances(session, run)),
+        ("others", number(time.and_then(|time| time.others))),
     ])
     .collect();
     row.extend(spread("wall", time.map(|time| time.wall)));

@@ -1,14 +1,15 @@
 //! Engines: every way to render, behind one interface.
 
-use super::record::{Axes, Implementation, Memory, PIXELS, SPLATS};
+use super::record::{Axes, Clock, Implementation, Memory, PIXELS, SPLATS};
 use crate::error::Result;
-use crate::geometry::{Camera, Parts, Surfels};
+use crate::geometry::{Camera, Surfels};
 use crate::picture::Picture;
 use crate::settings::Settings;
 use crate::settings::methods::Method;
 use crate::verify::baseline::{self, Baseline, Kind};
-use crate::vk::{Device, PassTime};
+use crate::vk::{Device, DeviceDescription, PassTime};
 use crate::{Outputs, Precision, Rasterizer, RasterizerChoice, RenderOptions, Renderer, Scene};
+use std::rc::Rc;
 use std::sync::Arc;
 
 /// A way to render.
@@ -34,13 +35,13 @@ impl Engine {
         match self {
             Self::Splatting { rasterizer, precision } => {
                 let rasterizer = rasterizer.map(|rasterizer| match rasterizer {
-                    Rasterizer::Draw => "draw",
-                    Rasterizer::Compute => "compute",
+                    Rasterizer::Draw => "--rasterizer draw",
+                    Rasterizer::Compute => "--rasterizer compute",
                 });
-                let half = (*precision == Precision::Half).then_some("16-bit sums");
+                let half = (*precision == Precision::Half).then_some("--half");
                 let (method, changes) = preset(settings);
                 let ways = rasterizer.into_iter().chain(half).map(str::to_owned);
-                let variant = changes.into_iter().chain(ways).collect::<Vec<_>>().join(", ");
+                let variant = changes.into_iter().chain(ways).collect::<Vec<_>>().join(" ");
                 Implementation { method: method.name.into(), variant }
             }
             Self::Baseline(Kind::Splats) => Implementation { method: SPLATS.into(), variant: String::new() },
@@ -60,7 +61,7 @@ fn preset(settings: &Settings) -> (Method, Vec<String>) {
     let changes = |method: &Method| {
         let preset = Axes::of(&method.splatting);
         let pairs = own.named().into_iter().zip(preset.named()).filter(|(own, preset)| own != preset);
-        pairs.map(|((axis, choice), _)| format!("{axis} {choice}")).collect::<Vec<_>>()
+        pairs.map(|((axis, choice), _)| format!("--{axis} {choice}")).collect::<Vec<_>>()
     };
     let all = Method::SPLATTING.map(|method| (method, changes(&method)));
     let numbers = (settings.cutoff, settings.lowpass, settings.widen, settings.cull);
@@ -83,25 +84,29 @@ pub trait LoadedEngine {
     /// As [`Renderer::render_picture`].
     fn picture(&mut self, camera: &Camera, settings: &Settings) -> Result<Picture>;
 
+    /// What measures the work of a frame.
+    fn clock(&self) -> Clock;
+
     /// Memory of the last frame.
     fn memory(&self) -> Memory;
 }
 
 /// A model on a Vulkan device, with one renderer for colour alone and one that adds normals and depths.
 pub struct DeviceEngine {
-    scene: Scene,
+    clock: Clock,
+    scene: Rc<Scene>,
     colour_only: Renderer,
     with_depth: Renderer,
 }
 
 impl DeviceEngine {
-    /// Uploads `parts`.
+    /// Renders `scene`, which other engines may render, too.
     ///
     /// # Errors
-    /// As [`Scene::upload`] and [`Renderer::new`].
-    pub fn new<'a>(
+    /// As [`Renderer::new`].
+    pub fn new(
         device: &Arc<Device>,
-        parts: impl Into<Parts<'a>>,
+        scene: Rc<Scene>,
         size: [u32; 2],
         rasterizer: RasterizerChoice,
         precision: Precision,
@@ -110,7 +115,12 @@ impl DeviceEngine {
         let outputs = Outputs { normal: true, depth: true, id: false };
         let with_depth = RenderOptions { outputs, profile: false, ..colour_only };
         Ok(Self {
-            scene: Scene::upload(device, parts)?,
+            clock: match device.capabilities().timestamps {
+                _ if device.description().kind == DeviceDescription::CPU => Clock::Cpu,
+                Some(_) => Clock::Gpu,
+                None => Clock::Wall,
+            },
+            scene,
             colour_only: Renderer::new(device, colour_only)?,
             with_depth: Renderer::new(device, with_depth)?,
         })
@@ -120,11 +130,15 @@ impl DeviceEngine {
 impl LoadedEngine for DeviceEngine {
     fn frame(&mut self, camera: &Camera, settings: &Settings, timed: bool) -> Result<Vec<PassTime>> {
         self.colour_only.profile(timed);
-        Ok(self.colour_only.render(&self.scene, camera, settings)?.pass_times)
+        Ok(self.colour_only.render(&*self.scene, camera, settings)?.pass_times)
     }
 
     fn picture(&mut self, camera: &Camera, settings: &Settings) -> Result<Picture> {
-        Ok(self.with_depth.render_picture(&self.scene, camera, settings)?.0)
+        Ok(self.with_depth.render_picture(&*self.scene, camera, settings)?.0)
+    }
+
+    fn clock(&self) -> Clock {
+        self.clock
     }
 
     fn memory(&self) -> Memory {
@@ -165,6 +179,10 @@ impl LoadedEngine for CpuEngine {
         Ok(self.baseline.picture())
     }
 
+    fn clock(&self) -> Clock {
+        Clock::Cpu
+    }
+
     fn memory(&self) -> Memory {
         let baseline::Memory { scene, splats, targets } = self.baseline.bytes();
         Memory { scene, splats, targets }
@@ -186,15 +204,15 @@ mod tests {
             assert_eq!(Engine::DEFAULT.implementation(&method.settings()).label(), method.name);
         }
         let default = Splatting::default();
-        assert_eq!(named(Splatting { filter: Filter::None, ..default }), "perspective-ewa (filter none)");
+        assert_eq!(named(Splatting { filter: Filter::None, ..default }), "perspective-ewa --filter none");
         let unfiltered = Method::named("sprites-unfiltered").unwrap().splatting;
         let squares = Splatting { footprint: Footprint::Square, ..unfiltered };
-        assert_eq!(named(squares), "sprites-unfiltered (footprint square)");
+        assert_eq!(named(squares), "sprites-unfiltered --footprint square");
         let confetti = Method::named("confetti").unwrap().splatting;
         let wide = Splatting { kernel: Kernel::Confetti { a: 1.0, n: 2.0 }, ..confetti };
-        assert_eq!(named(wide), "confetti (kernel confetti:1,2)");
+        assert_eq!(named(wide), "confetti --kernel confetti:1,2");
         let half = Engine::Splatting { rasterizer: Some(Rasterizer::Draw), precision: Precision::Half };
         let settings = Settings { splatting: squares, ..Default::default() };
-        assert_eq!(half.implementation(&settings).variant, "footprint square, draw, 16-bit sums");
+        assert_eq!(half.implementation(&settings).variant, "--footprint square --rasterizer draw --half");
     }
 }

@@ -1,6 +1,7 @@
 //! Numbers and names as text.
 
-use super::record::{Implementation, Memory, Provenance, Run, RunSettings, Session};
+use super::disturbance::{self, Disturbance};
+use super::record::{Clock, Implementation, Memory, Provenance, Run, RunSettings, Session};
 use crate::settings::methods::Method;
 
 /// Rounds to `digits` significant digits, without trailing zeros; uses a power of ten if the number would be long.
@@ -52,6 +53,44 @@ pub fn count(points: u64) -> String {
 /// Milliseconds, without the unit.
 pub fn ms(value: f64) -> String {
     significant(value, 3)
+}
+
+/// A method with options.
+pub fn with_options(implementation: &Implementation, settings: &str) -> String {
+    format!("{} {settings}", implementation.label()).trim_end().into()
+}
+
+/// What the times of these runs are.
+pub fn time_of<'a>(runs: impl IntoIterator<Item = &'a Run>) -> &'static str {
+    let clocks: Vec<Clock> = runs.into_iter().filter_map(|run| Some(run.time.as_ref()?.clock)).collect();
+    match () {
+        () if clocks.contains(&Clock::Gpu) => "GPU time",
+        () if clocks.contains(&Clock::Wall) => "wall time",
+        () => "CPU time",
+    }
+}
+
+/// [`time_of`], as a heading.
+pub fn time_heading<'a>(runs: impl IntoIterator<Item = &'a Run>) -> String {
+    format!("{} of a frame, ms", time_of(runs))
+}
+
+/// A disturbance of a run's times.
+pub fn disturbance(disturbance: &Disturbance) -> String {
+    match disturbance {
+        Disturbance::Busy(others) => {
+            format!("busy machine ({} processors)", significant(*others, 2))
+        }
+        Disturbance::Waited([wall, work]) => {
+            format!("waited ({} instead of {} ms)", self::ms(*wall), self::ms(*work))
+        }
+    }
+}
+
+/// The disturbances of a run's times; empty if there are none.
+pub fn disturbances(session: &Session, run: &Run) -> String {
+    let all = disturbance::disturbances(session, run);
+    all.iter().map(self::disturbance).collect::<Vec<_>>().join("; ")
 }
 
 /// A time relative to the CPU baseline.
@@ -129,17 +168,20 @@ pub fn stale(provenance: &Provenance, code: &str, now: &str) -> Option<String> {
     })
 }
 
-/// Each setting with its value, without the axes, which the implementation's name contains.
+/// Place of the shading among [`settings`].
+const SHADING: usize = 6;
+
+/// Each setting as its option of `surfel render`, without the axes, which the implementation's name contains.
 pub fn settings(setting: &RunSettings) -> [String; 7] {
     let RunSettings { cutoff, lowpass, widen, epsilon, cull, alpha, shading, axes: _ } = setting;
     [
-        format!("H {lowpass}"),
-        format!("F {cutoff}"),
-        format!("widen {widen}"),
-        format!("ε {epsilon}"),
-        format!("cull {cull}"),
-        format!("α {alpha}"),
-        shading.clone(),
+        format!("--lowpass {lowpass}"),
+        format!("--cutoff {cutoff}"),
+        format!("--widen {widen}"),
+        format!("--epsilon {epsilon}"),
+        format!("--cull {cull}"),
+        format!("--alpha {alpha}"),
+        format!("--shading {shading}"),
     ]
 }
 
@@ -152,7 +194,21 @@ pub fn differing_settings<'a>(runs: impl IntoIterator<Item = &'a Run>) -> [bool;
 /// The settings selected by `which`.
 pub fn selected_settings(setting: &RunSettings, which: [bool; 7]) -> String {
     let chosen = settings(setting).into_iter().zip(which).filter(|(_, asked)| *asked);
-    chosen.map(|(text, _)| text).collect::<Vec<_>>().join(", ")
+    chosen.map(|(text, _)| text).collect::<Vec<_>>().join(" ")
+}
+
+/// The options of `surfel render` beside the implementation's: settings that differ from the method's defaults, without the shading.
+pub fn options(run: &Run) -> String {
+    let (own, preset) = (settings(&run.settings), settings(&RunSettings::preset(&run.implementation.method)));
+    run_settings(run, std::array::from_fn(|i| i != SHADING && own[i] != preset[i]))
+}
+
+/// [`options`], and the shading if it is not that of all `runs`.
+pub fn options_among(run: &Run, runs: &[&Run]) -> String {
+    let shading = differing_settings(runs.iter().copied())[SHADING];
+    let shading = shading.then(|| settings(&run.settings)[SHADING].clone());
+    let all = std::iter::once(options(run)).chain(shading).filter(|option| !option.is_empty());
+    all.collect::<Vec<_>>().join(" ")
 }
 
 /// The settings of `run` selected by `which`; pull–push has neither filter nor kernel nor ε.

@@ -11,6 +11,7 @@
 //! | [`subject`] | scenes of any number of points, with their exact surface |
 //! | [`engine`] | ways to render, behind one interface |
 //! | [`stopwatch`] | times of frames |
+//! | [`disturbance`] | why times may not be those of the work |
 //! | [`error_terms`], [`hidden`] | parts of the error |
 //! | [`runner`], [`session`] | execution of plans |
 //! | [`papers`] | effects, costs and tables of the papers |
@@ -22,6 +23,7 @@
 pub mod code;
 pub mod convergence;
 pub mod csv;
+pub mod disturbance;
 pub mod engine;
 pub mod error_terms;
 mod format;
@@ -29,6 +31,7 @@ mod group;
 pub mod hard;
 pub mod hidden;
 pub mod images;
+mod load;
 pub mod papers;
 pub mod plan;
 pub mod recommendations;

@@ -55,6 +55,12 @@ pub struct Measurements {
 }
 
 impl Plan {
+    /// Whether both have the same points, picture and purpose: their frames take turns.
+    pub fn is_beside(&self, other: &Self) -> bool {
+        let what = |plan: &Self| (plan.points, plan.radius_scale, plan.size, plan.viewpoint, plan.experiment);
+        self.scene == other.scene && what(self) == what(other) && self.paper_item == other.paper_item
+    }
+
     /// The same run by a method with its own settings; the shading remains.
     pub(super) fn by(&self, method: &Method) -> Self {
         let settings = Settings { shading: self.settings.shading, ..method.settings() };

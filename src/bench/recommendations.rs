@@ -11,7 +11,7 @@ use super::record::{Experiment, Run, Session, View};
 pub struct Candidate<'a> {
     /// The run.
     pub run: &'a Run,
-    /// Median wall time of a frame, ms.
+    /// Median [work](super::record::Time::work) of a frame, ms.
     pub ms: f64,
     /// RMSE against the truth, linear light.
     pub rmse: f64,
@@ -61,7 +61,7 @@ impl<'a> Recommendations<'a> {
 impl<'a> Candidate<'a> {
     /// Whether the 95 % intervals of both median times overlap: which one is faster is unknown.
     pub fn is_as_fast_as(&self, other: &Self) -> bool {
-        let interval = |run: &Run| run.time.as_ref().and_then(|time| time.wall.interval);
+        let interval = |run: &Run| run.time.as_ref().and_then(|time| time.work().interval);
         match (interval(self.run), interval(other.run)) {
             (Some([low, high]), Some([other_low, other_high])) => low <= other_high && other_low <= high,
             _ => false,

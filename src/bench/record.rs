@@ -4,15 +4,15 @@
 mod run;
 
 pub use run::{
-    Against, Axes, Blended, Error, Experiment, Float64Error, Implementation, Memory, PIXELS, Pass, Run,
-    RunSettings, SPLATS, Terms, Time, View,
+    Against, Axes, Blended, Clock, Error, Experiment, Float64Error, Implementation, Memory, PIXELS, Pass,
+    Run, RunSettings, SPLATS, Terms, Time, View,
 };
 
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 
 /// Schema version of results; bumped on breaking changes.
-pub const FORMAT: u32 = 3;
+pub const FORMAT: u32 = 4;
 
 /// Prefix of a [`SweepPoint::note`] where float32 cannot agree with float64; the reason follows.
 pub const BEYOND_FLOAT32: &str = "beyond float32: ";
@@ -82,6 +82,8 @@ pub struct Gpu {
     pub name: String,
     /// Name and version of the driver.
     pub driver: String,
+    /// Kind of the device: `discrete GPU`, `integrated GPU`, `virtual GPU`, `CPU` or `other`.
+    pub kind: String,
     /// Whether the validation layers were active, which take time.
     pub validated: bool,
 }

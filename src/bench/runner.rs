@@ -6,6 +6,7 @@ use super::plan::Plan;
 use super::record::{self, Against, Float64Error, Images, Run, RunSettings, Time};
 use super::subject::{Subject, pixel_angle};
 use super::{error_terms, hidden, images, stopwatch};
+use crate::Scene;
 use crate::capture::{self, capture};
 use crate::error::{Error, Result};
 use crate::frame::times::Statistics;
@@ -52,6 +53,7 @@ pub struct Runner {
     scans: Vec<Rc<Subject>>,
     subject: Option<Rc<Subject>>,
     model: Option<(ModelKey, Rc<Model>)>,
+    scene: Option<(Rc<Model>, Rc<Scene>)>,
     truths: HashMap<String, Rc<Truth>>,
     images: Vec<Images>,
 }
@@ -66,6 +68,21 @@ struct ModelKey {
     weights: Option<Settings>,
 }
 
+/// Memory of the engines that take turns, about.
+const MOST_BYTES: u64 = 2 << 30;
+
+/// A job with its loaded engine.
+struct Opened<'a> {
+    job: Job<'a>,
+    engine: Box<dyn LoadedEngine>,
+}
+
+impl Opened<'_> {
+    fn side(&mut self) -> stopwatch::Side<'_> {
+        (&mut *self.engine, &self.job.camera, &self.job.plan.settings)
+    }
+}
+
 /// A plan with its model and camera.
 struct Job<'a> {
     plan: &'a Plan,
@@ -78,7 +95,15 @@ struct Job<'a> {
 impl Runner {
     /// A runner for plans of these scans and of built-in scenes.
     pub fn new(options: Options, scans: Vec<Rc<Subject>>) -> Self {
-        Self { options, scans, subject: None, model: None, truths: HashMap::new(), images: Vec::new() }
+        Self {
+            options,
+            scans,
+            subject: None,
+            model: None,
+            scene: None,
+            truths: HashMap::new(),
+            images: Vec::new(),
+        }
     }
 
     /// Executes a plan; a run that cannot be rendered is returned as refused.
@@ -86,12 +111,41 @@ impl Runner {
     /// # Errors
     /// If the device is lost.
     pub fn run(&mut self, plan: &Plan) -> Result<Run> {
-        let mut run = blank(plan);
-        match self.job(plan).and_then(|job| self.fill(&job, &mut run)) {
-            Ok(()) => Ok(run),
-            Err(error) if error.is_device_lost() => Err(error),
-            Err(error) => Ok(Run { refused: Some(error.to_string()), ..blank(plan) }),
+        let mut only = None;
+        self.run_together(std::slice::from_ref(plan), &mut |run| only = Some(run))?;
+        Ok(only.unwrap_or_else(|| blank(plan)))
+    }
+
+    /// Executes plans that are [beside](Plan::is_beside) each other, and hands each run over in their order. The frames that are timed take
+    /// turns, of as many plans as a limit of memory permits. A run that cannot be rendered is refused.
+    ///
+    /// # Errors
+    /// If the device is lost.
+    pub fn run_together(&mut self, plans: &[Plan], done: &mut dyn FnMut(Run)) -> Result<()> {
+        let fewer = (MOST_BYTES / plans.first().map_or(1, bytes_about)).max(1) as usize;
+        for plans in plans.chunks(fewer) {
+            let mut opened: Vec<Result<Opened<'_>>> = plans.iter().map(|plan| self.open(plan)).collect();
+            let mut times = time_all(&mut opened, &self.options.effort).into_iter();
+            let mut runs = Vec::new();
+            for (plan, opened) in plans.iter().zip(opened) {
+                let run = opened.and_then(|opened| {
+                    let time = plan.measurements.time.then(|| times.next()).flatten().transpose()?;
+                    self.fill(opened, time)
+                });
+                runs.push(run);
+            }
+            for (plan, run) in plans.iter().zip(runs) {
+                let alone = || self.open(plan).and_then(|opened| self.fill_alone(opened));
+                // Another run may have taken the memory.
+                let run = if plans.len() > 1 { run.or_else(|error| retried(error, alone)) } else { run };
+                match run {
+                    Ok(run) => done(run),
+                    Err(error) if error.is_device_lost() => return Err(error),
+                    Err(error) => done(Run { refused: Some(error.to_string()), ..blank(plan) }),
+                }
+            }
         }
+        Ok(())
     }
 
     /// The images of all runs.
@@ -133,16 +187,30 @@ impl Runner {
         self.options.device.as_ref().ok_or_else(none)
     }
 
-    fn fill(&mut self, job: &Job<'_>, run: &mut Run) -> Result<()> {
+    /// Loads the model of a plan into its engine.
+    fn open<'a>(&mut self, plan: &'a Plan) -> Result<Opened<'a>> {
+        let job = self.job(plan)?;
+        let engine = self.load(plan.engine, &job.model, plan.size)?;
+        Ok(Opened { job, engine })
+    }
+
+    /// Times the frames of one engine, and measures the rest.
+    fn fill_alone(&mut self, mut opened: Opened<'_>) -> Result<Run> {
+        let time = opened.job.plan.measurements.time;
+        let mut sides: Vec<_> = time.then(|| opened.side()).into_iter().collect();
+        let time = stopwatch::take_turns(&mut sides, &self.options.effort).pop().transpose()?;
+        self.fill(opened, time)
+    }
+
+    /// Measures all but the times.
+    fn fill(&mut self, opened: Opened<'_>, time: Option<Time>) -> Result<Run> {
+        let Opened { job, mut engine } = opened;
         let (plan, settings) = (job.plan, &job.plan.settings);
+        let mut run = Run { time, ..blank(plan) };
         run.points = job.model.surfels.len() as u64;
         run.overlap = job.subject.area().map(|area| overlap(&job.model.surfels, area));
-        let mut engine = self.load(plan.engine, &job.model, plan.size)?;
-        if plan.measurements.time {
-            run.time = Some(stopwatch::time(&mut *engine, &job.camera, settings, &self.options.effort)?);
-        }
         if let Some(base) = &plan.base {
-            run.ratio = self.ratio(job, &mut *engine, base)?;
+            run.ratio = self.ratio(&job, &mut *engine, base)?;
         }
         let measurements = plan.measurements;
         if measurements.error
@@ -152,28 +220,28 @@ impl Runner {
             || measurements.details
         {
             let picture = engine.picture(&job.camera, settings)?;
-            let expected = self.agree(job, &picture, run)?;
+            let expected = self.agree(&job, &picture, &mut run)?;
             if measurements.error {
-                run.error = Some(self.error(job, &picture)?);
+                run.error = Some(self.error(&job, &picture)?);
             }
             if measurements.details && settings.shading == Shading::Overlap {
                 run.blended = details::blended(&picture);
             }
             if measurements.terms {
-                self.add_terms(job, &picture, expected.as_ref(), run)?;
+                self.add_terms(&job, &picture, expected.as_ref(), &mut run)?;
             }
             if measurements.images {
-                self.add_images(job, &picture, run)?;
+                self.add_images(&job, &picture, &mut run)?;
             }
         }
         if measurements.flicker {
-            let flicker = self.flicker(job, &mut *engine)?;
+            let flicker = self.flicker(&job, &mut *engine)?;
             run.error.iter_mut().for_each(|error| {
                 error.metrics.insert("flicker".into(), flicker);
             });
         }
         run.memory = engine.memory();
-        Ok(())
+        Ok(run)
     }
 
     /// Times frames relative to those of `base`.
@@ -190,14 +258,25 @@ impl Runner {
         stopwatch::ratio(first, second, &self.options.effort)
     }
 
-    fn load(&self, engine: Engine, model: &Model, size: [u32; 2]) -> Result<Box<dyn LoadedEngine>> {
+    fn load(&mut self, engine: Engine, model: &Rc<Model>, size: [u32; 2]) -> Result<Box<dyn LoadedEngine>> {
         match engine {
             Engine::Splatting { rasterizer, precision } => {
                 let rasterizer = rasterizer.map_or(self.options.rasterizer, RasterizerChoice::Require);
-                Ok(Box::new(DeviceEngine::new(self.device()?, model, size, rasterizer, precision)?))
+                let scene = self.scene(model)?;
+                Ok(Box::new(DeviceEngine::new(self.device()?, scene, size, rasterizer, precision)?))
             }
             Engine::Baseline(kind) => Ok(Box::new(CpuEngine::new(&model.surfels, size, kind)?)),
         }
+    }
+
+    /// The uploaded model; the last one is kept.
+    fn scene(&mut self, model: &Rc<Model>) -> Result<Rc<Scene>> {
+        let scene = match self.scene.take() {
+            Some((of, scene)) if Rc::ptr_eq(&of, model) => scene,
+            _ => Rc::new(Scene::upload(self.device()?, &**model)?),
+        };
+        self.scene = Some((model.clone(), scene.clone()));
+        Ok(scene)
     }
 
     /// Compares the picture with the float64 reference, if the plan asks for it, and returns the reference's picture.
@@ -247,7 +326,7 @@ impl Runner {
         let clean = if visible.is_empty() {
             Picture { size: picture.size, colour: vec![[0.0; 4]; picture.colour.len()], ..Default::default() }
         } else {
-            let mut engine = self.load(job.plan.engine, &visible.into(), job.plan.size)?;
+            let mut engine = self.load(job.plan.engine, &Rc::new(visible.into()), job.plan.size)?;
             engine.picture(&job.camera, &job.plan.settings)?
         };
         if let Some(error) = &mut run.error {
@@ -339,6 +418,22 @@ fn filter_name(options: &truth::Options) -> String {
         truth::Filter::Box => "box".into(),
         truth::Filter::Point => "point".into(),
     }
+}
+
+/// Times of all that are opened and ask for them.
+fn time_all(opened: &mut [Result<Opened<'_>>], effort: &stopwatch::Effort) -> Vec<Result<Time>> {
+    let timed = opened.iter_mut().flatten().filter(|opened| opened.job.plan.measurements.time);
+    stopwatch::take_turns(&mut timed.map(Opened::side).collect::<Vec<_>>(), effort)
+}
+
+/// What another attempt gives, unless the device is lost.
+fn retried(error: Error, again: impl FnOnce() -> Result<Run>) -> Result<Run> {
+    if error.is_device_lost() { Err(error) } else { again() }
+}
+
+/// Bytes that an engine of this plan takes at most, about: pull–push's targets, and splats.
+fn bytes_about(plan: &Plan) -> u64 {
+    120 * u64::from(plan.size[0]) * u64::from(plan.size[1]) + 100 * plan.points
 }
 
 /// A run without results.

@@ -1,6 +1,7 @@
 //! One call of the bench: all runs of some suites on one machine.
 
-use super::record::{Gpu, Host, Provenance, Run, RunSettings, SPLATS, Session, Sweep};
+use super::plan::Plan;
+use super::record::{Clock, Gpu, Host, Provenance, Run, RunSettings, SPLATS, Session, Sweep, Time};
 use super::runner::{Options, Runner};
 use super::suites::{Suite, UserInputs};
 use super::{code, hard};
@@ -52,13 +53,15 @@ pub fn measure(options: &SessionOptions, progress: &dyn Progress) -> (Session, R
             effort: suite.effort(),
         };
         let (mut runner, before) = (Runner::new(of_suite, options.inputs.subjects.clone()), images.len());
-        let done = plans(suite).iter().try_for_each(|plan| {
-            let begin = Instant::now();
-            let mut run = runner.run(plan)?;
-            log::info!("{} {} {:?}: {:.2?}", plan.scene, plan.points, plan.experiment, begin.elapsed());
-            run.images.iter_mut().for_each(|index| *index += before);
-            runs.push(run);
-            progress.at(STAGE, runs.len() as u64, total);
+        let done = plans(suite).chunk_by(Plan::is_beside).try_for_each(|plans| {
+            let (begin, plan) = (Instant::now(), &plans[0]);
+            runner.run_together(plans, &mut |mut run| {
+                run.images.iter_mut().for_each(|index| *index += before);
+                runs.push(run);
+                progress.at(STAGE, runs.len() as u64, total);
+            })?;
+            let (scene, points, experiment) = (&plan.scene, plan.points, plan.experiment);
+            log::info!("{scene} {points} {experiment:?}: {} runs in {:.2?}", plans.len(), begin.elapsed());
             Ok(())
         });
         images.extend(runner.images());
@@ -103,16 +106,18 @@ fn compare_times(runs: &mut [Run]) {
             && own.alpha == alpha
     };
     let baselines = runs.iter().filter(|run| run.implementation.method == SPLATS).filter(shipped);
-    let baselines: Vec<(Run, f64)> = baselines.filter_map(|run| Some((run.clone(), run.ms()?))).collect();
+    let baselines: Vec<Run> = baselines.filter(|run| run.ms().is_some()).cloned().collect();
     for run in runs {
-        let alike = baselines.iter().filter(|(other, _)| {
+        let alike = baselines.iter().filter(|other| {
             let what = |run: &Run| (run.points, run.size, run.overlap);
             run.scene == other.scene && what(run) == what(other)
         });
         let distance = |other: &Run| (run.suite != other.suite, run.experiment != other.experiment);
-        let unit = alike.min_by_key(|(other, _)| distance(other)).map(|(_, ms)| *ms);
+        let unit = alike.min_by_key(|other| distance(other)).and_then(|other| other.time.as_ref());
         if let (Some(time), Some(unit)) = (&mut run.time, unit) {
-            time.baseline_ratio = Some(time.wall.median / unit);
+            let of =
+                |time: &Time, clock| if clock == Clock::Cpu { time.cpu.median } else { time.wall.median };
+            time.baseline_ratio = Some(of(time, time.clock) / of(unit, time.clock));
         }
     }
 }
@@ -130,5 +135,10 @@ fn host() -> Host {
 
 fn gpu(device: &Device, validated: bool) -> Gpu {
     let description = device.description();
-    Gpu { name: description.name.clone(), driver: description.driver.clone(), validated }
+    Gpu {
+        name: description.name.clone(),
+        driver: description.driver.clone(),
+        kind: description.kind.into(),
+        validated,
+    }
 }

@@ -1,5 +1,6 @@
 //! Results as text for a terminal: one line per run and per sweep.
 
+use super::disturbance::{Disturbance, disturbances};
 use super::group::grouped;
 use super::record::{Experiment, Faults, Float64Error, Results, Run, Session, Sweep, SweepPoint};
 use super::{format, papers};
@@ -10,14 +11,14 @@ use std::fmt::Write;
 pub const WIDTH: usize = 160;
 
 /// Columns of a table, with their alignment.
-const HEADERS: [(&str, Align); 17] = [
+const HEADERS: [(&str, Align); 18] = [
     ("points", Align::Right),
     ("size px", Align::Right),
     ("implementation", Align::Left),
-    ("settings", Align::Left),
+    ("options", Align::Left),
     ("overlap", Align::Right),
-    ("wall ms (min–max)", Align::Left),
-    ("CPU ms", Align::Right),
+    ("time ms (95 %)", Align::Left),
+    ("wall ms", Align::Right),
     ("× base", Align::Right),
     ("RMSE", Align::Left),
     ("FLIP", Align::Left),
@@ -28,9 +29,10 @@ const HEADERS: [(&str, Align); 17] = [
     ("n p95 °", Align::Right),
     ("float64 error", Align::Left),
     ("MiB", Align::Right),
+    ("disturbed", Align::Left),
 ];
-/// Columns that may be cut: method and settings.
-const CUTTABLE: [usize; 2] = [2, 3];
+/// Columns that may be cut: method, options and disturbances.
+const CUTTABLE: [usize; 3] = [2, 3, 17];
 
 #[derive(Clone, Copy)]
 enum Align {
@@ -50,13 +52,14 @@ pub fn table(results: &Results, code: &str, commit: &str) -> String {
         }
         for group in groups(&session.runs) {
             let run = group[0];
-            let common = common(&group);
-            let _ = write!(text, "\n{} · {} · {}", run.suite, run.experiment.name(), run.scene);
+            let common = common(session, &group);
+            let (suite, shading) = (&run.suite, &run.settings.shading);
+            let _ = write!(text, "\n{suite} · {} · {} · {shading}", run.experiment.name(), run.scene);
             for (_, cell) in &common {
                 let _ = write!(text, " · {cell}");
             }
             text.push('\n');
-            text += &lines(&group, &common);
+            text += &lines(session, &group, &common);
         }
         text += &papers::text(session);
         text += &sweeps(session);
@@ -65,34 +68,38 @@ pub fn table(results: &Results, code: &str, commit: &str) -> String {
     text
 }
 
-/// Runs of one suite, experiment and scene, in the order of their first; without those of the papers' own tables.
+/// Runs of one suite, experiment, scene and shading, in the order of their first; without those of the papers' own tables.
 fn groups(runs: &[Run]) -> Vec<Vec<&Run>> {
     let own = runs.iter().filter(|run| {
         !matches!(run.experiment, Experiment::Effects | Experiment::Claims | Experiment::PaperTables)
     });
-    let groups = grouped(own, |run| (&run.suite, run.experiment, &run.scene));
+    let groups = grouped(own, |run| (&run.suite, run.experiment, &run.scene, &run.settings.shading));
     groups.into_iter().map(|(_, runs)| runs).collect()
 }
 
 /// A column, and its text for a run.
-type Common = (usize, fn(&Run) -> String);
+type Common = (usize, fn(&Session, &Run) -> String);
 
 /// Columns with the same text for all runs, which is printed once.
-fn common(runs: &[&Run]) -> Vec<(usize, String)> {
-    let columns: [Common; 3] = [
-        (0, |run| format!("{} points", format::count(run.points))),
-        (1, |run| format!("{} px", format::size(run.size))),
-        (2, |run| run.implementation.label()),
+fn common(session: &Session, runs: &[&Run]) -> Vec<(usize, String)> {
+    let columns: [Common; 4] = [
+        (0, |_, run| format!("{} points", format::count(run.points))),
+        (1, |_, run| format!("{} px", format::size(run.size))),
+        (2, |_, run| run.implementation.label()),
+        (17, disturbed),
     ];
-    let same = |(_, of): &Common| runs.len() > 1 && runs.iter().all(|run| of(run) == of(runs[0]));
-    columns.into_iter().filter(same).map(|(column, of)| (column, of(runs[0]))).collect()
+    let cells = columns.into_iter().map(|(column, of)| {
+        let mut cells = runs.iter().map(|run| of(session, run));
+        let first = cells.next().filter(|first| runs.len() > 1 && !first.is_empty())?;
+        cells.all(|cell| cell == first).then_some((column, first))
+    });
+    cells.flatten().collect()
 }
 
 /// Aligned lines, without columns that are empty or in `common`.
-fn lines(runs: &[&Run], common: &[(usize, String)]) -> String {
-    let differing = format::differing_settings(runs.iter().copied());
+fn lines(session: &Session, runs: &[&Run], common: &[(usize, String)]) -> String {
     let mut rows: Vec<Vec<String>> = vec![HEADERS.map(|(name, _)| name.to_owned()).to_vec()];
-    rows.extend(runs.iter().map(|run| cells(run, differing)));
+    rows.extend(runs.iter().map(|run| cells(session, run, runs)));
     let is_own = |column: &usize| common.iter().all(|(other, _)| other != column);
     let visible: Vec<usize> = (0..HEADERS.len())
         .filter(|&i| rows[1..].iter().any(|row| !row[i].is_empty()))
@@ -127,11 +134,13 @@ fn widths(rows: &[Vec<String>], columns: &[usize]) -> Vec<usize> {
     widths
 }
 
-fn cells(run: &Run, differing: [bool; 7]) -> Vec<String> {
+fn cells(session: &Session, run: &Run, runs: &[&Run]) -> Vec<String> {
     let metric = |name, digits| run.metric(name).map(|v| format::significant(v, digits)).unwrap_or_default();
-    let wall = |run: &Run| {
-        let wall = run.time.as_ref()?.wall;
-        Some(format!("{} ({}–{})", format::ms(wall.median), format::ms(wall.min), format::ms(wall.max)))
+    let time = |run: &Run| {
+        let work = run.time.as_ref()?.work();
+        let interval =
+            work.interval.map(|[low, high]| format!(" ({}–{})", format::ms(low), format::ms(high)));
+        Some(format::ms(work.median) + &interval.unwrap_or_default())
     };
     let multiple = run.time.as_ref().and_then(|time| time.baseline_ratio).map(format::baseline_ratio);
     let memory = format::total(run.memory);
@@ -139,7 +148,7 @@ fn cells(run: &Run, differing: [bool; 7]) -> Vec<String> {
         format::count(run.points),
         format::size(run.size),
         run.implementation.label(),
-        format::run_settings(run, differing),
+        format::options_among(run, runs),
         // In other experiments it is the scene's own.
         run.overlap
             .filter(|_| run.experiment == Experiment::ScalingOverlap)
@@ -147,8 +156,8 @@ fn cells(run: &Run, differing: [bool; 7]) -> Vec<String> {
             .unwrap_or_default(),
     ];
     let rest = [
-        wall(run).unwrap_or_default(),
-        run.time.as_ref().map(|time| format::ms(time.cpu.median)).unwrap_or_default(),
+        time(run).unwrap_or_default(),
+        run.time.as_ref().map(|time| format::ms(time.wall.median)).unwrap_or_default(),
         multiple.unwrap_or_default(),
         metric("rmse", 3),
         metric("flip", 3),
@@ -159,8 +168,18 @@ fn cells(run: &Run, differing: [bool; 7]) -> Vec<String> {
         metric("normal-p95", 3),
         run.float64_error.as_ref().map(float64_error).unwrap_or_default(),
         if memory == 0 { String::new() } else { format::mib(memory) },
+        disturbed(session, run),
     ];
     start.into_iter().chain(rest).collect()
+}
+
+/// Disturbances of a run's times, in words.
+fn disturbed(session: &Session, run: &Run) -> String {
+    let word = |disturbance: &Disturbance| match disturbance {
+        Disturbance::Busy(_) => "busy machine",
+        Disturbance::Waited(_) => "waited",
+    };
+    disturbances(session, run).iter().map(word).collect::<Vec<_>>().join(", ")
 }
 
 /// The largest difference of colours, and the number of pixels out of tolerance, if any.

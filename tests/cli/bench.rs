@@ -47,7 +47,7 @@ fn results_of_other_versions_are_marked() {
     let provenance = r#""version":"0.1.0","commit":"0123456789","code":"another","date":"2026-01-02T03:04:05Z","seconds":1.0,
         "command":"surfel bench","suites":["quick"],"host":{"cpu":"A","cores":2,"memory":1,"system":"B"},"device":null"#;
     let session = format!(r#"{{"provenance":{{{provenance}}},"runs":[],"sweeps":[],"images":[]}}"#);
-    program.write("old.json", format!(r#"{{"format":3,"sessions":[{session}]}}"#));
+    program.write("old.json", format!(r#"{{"format":4,"sessions":[{session}]}}"#));
     let run = program.run("bench --from old.json --report page");
     assert!(run.text().contains("0123456789"), "{}", run.text());
     let page = std::fs::read_to_string(program.path("page/index.html")).unwrap();

@@ -165,7 +165,7 @@ fn methods_whose_intervals_overlap_share_a_place() {
         session.runs = methods(&[("perspective-ewa", 0.03), ("sprites", 0.02)]);
         for (run, ms) in session.runs.iter_mut().zip([10.0, 10.0 * slower]) {
             let time = run.time.as_mut().unwrap();
-            (time.wall.median, time.wall.interval) = (ms, Some([(1.0 - spread) * ms, (1.0 + spread) * ms]));
+            (time.cpu.median, time.cpu.interval) = (ms, Some([(1.0 - spread) * ms, (1.0 + spread) * ms]));
         }
         let recommendations = Recommendations::of(&session).unwrap();
         let column = &recommendations.columns[0];
@@ -323,7 +323,7 @@ fn numbers_that_cannot_be_drawn_are_tolerated() {
     for (i, run) in session.runs.iter_mut().enumerate() {
         let value = hard[i % hard.len()];
         if let Some(time) = &mut run.time {
-            (time.wall.median, time.baseline_ratio) = (hard[(i / 3) % hard.len()], Some(value));
+            (time.cpu.median, time.baseline_ratio) = (hard[(i / 3) % hard.len()], Some(value));
         }
         if let Some(error) = &mut run.error {
             error.metrics.insert("rmse".into(), value);
@@ -388,7 +388,7 @@ fn sessions_are_shown_separately() {
     let mut other = session();
     other.provenance.code = "older".into();
     other.provenance.device.as_mut().unwrap().name = "NVIDIA H100".into();
-    other.runs.iter_mut().flat_map(|run| &mut run.time).for_each(|time| time.wall.median *= 0.01);
+    other.runs.iter_mut().flat_map(|run| &mut run.time).for_each(|time| time.cpu.median *= 0.01);
     results.sessions.push(other);
     check(&results);
     let page = page(&results, CODE);
@@ -452,8 +452,8 @@ fn the_table_is_narrow_and_has_reasons_of_refusals() {
     );
     // Settings are shown where they differ: cut-offs in one experiment only.
     let group = |name| text.split("\n\n").find(|group| group.starts_with(name)).unwrap();
-    assert!(group("quick · lowpass").contains("F 1.5, widen small"));
-    assert!(!group("quick · budget").contains("F "));
+    assert!(group("quick · lowpass").contains("--cutoff 1.5"));
+    assert!(!group("quick · budget").contains("--cutoff"));
 }
 
 #[test]
@@ -462,7 +462,7 @@ fn published_numbers_are_shown_beside_measured_ones() {
     let page = page(&results, CODE);
     let text = table(&results, CODE, NOW);
     for words in
-        ["81 of perspective-ewa (visibility axis) against 0 of perspective-ewa", "2.5 (2.25–3)", "3.6 to 4.8"]
+        ["81 of perspective-ewa --visibility axis against 0 of perspective-ewa", "2.5 (2.25–3)", "3.6 to 4.8"]
     {
         assert!(page.contains(words) && text.contains(words), "{words}\n{text}");
     }

@@ -8,6 +8,7 @@ mod bench_report;
 mod capture;
 mod creases;
 mod discs;
+mod disturbance;
 mod estimate;
 mod footprint;
 mod frames;

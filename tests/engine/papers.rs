@@ -20,7 +20,7 @@ fn check(name: &str) {
     let runs: Vec<Run> = effect.plans().iter().map(|plan| runner.run(plan).unwrap()).collect();
     for run in &runs {
         let metrics = effect.metrics.iter().map(|(name, label)| format!("{label} {:?}", value(run, name)));
-        let what = [run.implementation.label(), format!("F {}, {}", run.settings.cutoff, run.scene)];
+        let what = [run.implementation.label(), format!("--cutoff {}, {}", run.settings.cutoff, run.scene)];
         println!("{}: {}: {}", effect.name, what.join(", "), metrics.collect::<Vec<_>>().join(", "));
         assert_eq!(run.refused, None);
     }

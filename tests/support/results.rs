@@ -49,13 +49,15 @@ pub fn provenance() -> Provenance {
         device: Some(Gpu {
             name: "llvmpipe (LLVM 15.0.6, 256 bits)".into(),
             driver: "llvmpipe Mesa 22.3.6 (LLVM 15.0.6)".into(),
+            kind: "CPU".into(),
             validated: false,
         }),
     }
 }
 
 pub fn implementation(variant: &str) -> Implementation {
-    Implementation { method: "perspective-ewa".into(), variant: variant.into() }
+    let options = if variant.is_empty() { String::new() } else { format!("--rasterizer {variant}") };
+    Implementation { method: "perspective-ewa".into(), variant: options }
 }
 
 pub fn native() -> Implementation {
@@ -122,12 +124,14 @@ pub fn time(ms: f64) -> Time {
     };
     let passes = [("footprint", 0.1), ("visibility", 0.3), ("attribute", 0.5), ("normalize", 0.08)];
     Time {
+        clock: Clock::Cpu,
         frames: 12,
         warmup: 2,
-        wall: spread(1.0),
-        cpu: spread(1.9),
+        wall: spread(0.52),
+        cpu: spread(1.0),
         passes: passes.map(|(name, share)| Pass { name: name.into(), ms: spread(share) }).to_vec(),
         device: Some(spread(0.98)),
+        others: Some(0.02),
         baseline_ratio: Some(ms / 60.0),
     }
 }
@@ -141,7 +145,7 @@ fn budget() -> Vec<Run> {
             let more = points as f64 / 1e4;
             let error = (difficulty * 0.09 * more.powf(-0.37)).hypot(floor);
             let ms = 90.0 + 21.0 * more.powf(0.51);
-            for (variant, slower) in [("compute", 1.0), ("raster", 1.9)] {
+            for (variant, slower) in [("compute", 1.0), ("draw", 1.9)] {
                 for (lowpass, cheaper, worse) in [(1.0, 1.0, 1.0), (0.25, 0.8, 1.06), (0.0, 0.76, 1.12)] {
                     let mut run =
                         run(Experiment::Budget, scene, points, slower * cheaper * ms, worse * error);
@@ -198,8 +202,8 @@ fn aliasing() -> Vec<Run> {
 
 fn scaling() -> Vec<Run> {
     let mut runs = Vec::new();
-    for variant in ["compute", "raster"] {
-        let slower = if variant == "raster" { 1.8 } else { 1.0 };
+    for variant in ["compute", "draw"] {
+        let slower = if variant == "draw" { 1.8 } else { 1.0 };
         let mut add = |experiment, points, size: u32, overlap: f64, ms: f64| {
             let mut run = run(experiment, "scene:bumpy-sphere", points, slower * ms, 0.03);
             (run.error, run.float64_error) = (None, None);
@@ -250,7 +254,7 @@ fn baseline() -> Vec<Run> {
     let mut runs = Vec::new();
     for (points, ms) in [(100_000, 62.0), (1_000_000, 164.0)] {
         for (implementation, times) in
-            [(native(), 1.0), (implementation("compute"), 2.3), (implementation("raster"), 4.4)]
+            [(native(), 1.0), (implementation("compute"), 2.3), (implementation("draw"), 4.4)]
         {
             let mut run = run(Experiment::Baseline, "scene:bumpy-sphere", points, times * ms, 0.03);
             run.error = None;
@@ -270,7 +274,7 @@ fn papers() -> Vec<Run> {
     };
     let mut axis = of(Experiment::Effects, "axis-offset", 20_000, 3.0, 0.05);
     let mut ray = of(Experiment::Effects, "axis-offset", 20_000, 3.0, 0.04);
-    axis.implementation.variant = "visibility axis".into();
+    axis.implementation.variant = "--visibility axis".into();
     for (run, gaps) in [(&mut axis, 81.0), (&mut ray, 0.0)] {
         run.error.as_mut().unwrap().metrics.insert("gaps".into(), gaps);
         run.images = Some(1);
@@ -320,7 +324,7 @@ fn grazing() -> Sweep {
             .map(|&left| point(variant, left, [4e-6 * f64::powf(left, -0.1), 3e-5, 8e-7]))
             .collect::<Vec<_>>()
     };
-    let points = [of("compute"), of("raster")].concat();
+    let points = [of("compute"), of("draw")].concat();
     sweep("grazing-angle", "A disc seen ever more from its edge.", "angle to the surface, degrees", points)
 }
 

@@ -113,7 +113,7 @@ pub struct Blended {
 pub struct Implementation {
     /// Name of the method.
     pub method: String,
-    /// Variant of the method, if there are several: rasterizer, precision of the sums.
+    /// Options of `surfel render` that distinguish it from the method alone: axes of splatting, rasterizer, precision of the sums.
     pub variant: String,
 }
 
@@ -162,9 +162,25 @@ fn mask() -> String {
     Alpha::Mask.name().into()
 }
 
+/// What measures the work of a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, strum::IntoStaticStr)]
+#[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case")]
+pub enum Clock {
+    /// Processor time of all threads: of the CPU baseline, and of devices that are processors.
+    #[default]
+    Cpu,
+    /// Sum of the passes by the timestamps of a GPU.
+    Gpu,
+    /// Wall time of the caller, which other programs and waiting lengthen: of GPUs without timestamps.
+    Wall,
+}
+
 /// Times of frames, without read-back and without warm-up frames.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Time {
+    /// Which of the times is the work of a frame: [`Time::work`].
+    pub clock: Clock,
     /// Timed frames.
     pub frames: usize,
     /// Warm-up frames before them.
@@ -177,8 +193,10 @@ pub struct Time {
     pub passes: Vec<Pass>,
     /// Sum of all passes of a frame, ms.
     pub device: Option<Statistics>,
-    /// `wall.median` divided by that of the CPU baseline, for the same scene, points and size with default settings,
-    /// measured in the same session.
+    /// Logical processors that other programs kept busy meanwhile, on average; none if it is unknown.
+    pub others: Option<f64>,
+    /// Median time divided by that of the CPU baseline, for the same scene, points and size with default settings, measured in the same
+    /// session: of processor time on devices that are processors, otherwise of wall time, which both have in common.
     pub baseline_ratio: Option<f64>,
 }
 
@@ -300,9 +318,9 @@ impl Run {
         self.is_preset() && self.implementation.method == Method::SPLATTING[0].name
     }
 
-    /// Median wall time, ms; none if it was not timed, or if the time is not above 0.
+    /// Median [work](Time::work) of a frame, ms; none if it was not timed, or if the time is not above 0.
     pub fn ms(&self) -> Option<f64> {
-        self.time.as_ref().map(|time| time.wall.median).filter(|ms| ms.is_finite() && *ms > 0.0)
+        self.time.as_ref().map(|time| time.work().median).filter(|ms| ms.is_finite() && *ms > 0.0)
     }
 
     /// A metric, if it was computed.
@@ -318,6 +336,17 @@ impl Run {
     /// Whether the error is against the exact picture of the surface.
     pub fn has_truth(&self) -> bool {
         self.error.as_ref().is_some_and(|error| error.against == Against::Surface)
+    }
+}
+
+impl Time {
+    /// The work of a frame, ms, by its [clock](Clock).
+    pub fn work(&self) -> Statistics {
+        match (self.clock, self.device) {
+            (Clock::Gpu, Some(device)) => device,
+            (Clock::Cpu, _) => self.cpu,
+            _ => self.wall,
+        }
     }
 }
 
@@ -386,13 +415,9 @@ impl Implementation {
         [SPLATS, PIXELS].contains(&self.method.as_str())
     }
 
-    /// The method and, in parentheses, the variant.
+    /// The method and the variant's options.
     pub fn label(&self) -> String {
-        if self.variant.is_empty() {
-            self.method.clone()
-        } else {
-            format!("{} ({})", self.method, self.variant)
-        }
+        format!("{} {}", self.method, self.variant).trim_end().into()
     }
 }
 

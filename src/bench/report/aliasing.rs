@@ -25,7 +25,6 @@ pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
 }
 
 fn table(runs: &[&Run]) -> Markup {
-    let differing = format::differing_settings(runs.iter().copied());
     let metrics = ["rmse", "flip", "ssim", "flicker"];
     let taken: Vec<&str> =
         metrics.into_iter().filter(|name| runs.iter().any(|run| run.metric(name).is_some())).collect();
@@ -33,12 +32,12 @@ fn table(runs: &[&Run]) -> Markup {
     html! {
         div.scroll { table {
             thead { tr {
-                th scope="col" { "implementation" } th scope="col" { "settings" } th.number scope="col" { "points" }
+                th scope="col" { "implementation" } th scope="col" { "options" } th.number scope="col" { "points" }
                 @for name in &taken { th.number scope="col" { (name) } }
                 th.number scope="col" { "ms" } th scope="col" { "RMSE" }
             } }
             tbody { @for run in runs { tr {
-                td { (run.implementation.label()) } td { (format::run_settings(run, differing)) }
+                td { (run.implementation.label()) } td { (format::options_among(run, runs)) }
                 td.number { (format::count(run.points)) }
                 @for name in &taken {
                     td.number { (run.metric(name).map(|value| format::significant(value, 3)).unwrap_or_default()) }
@@ -63,7 +62,7 @@ fn sentences(runs: &[&Run]) -> Vec<String> {
         let (Some(off), Some(on)) = (off, on) else { continue };
         if let (Some(without), Some(with)) = (off.rmse(), on.rmse()) {
             sentences.push(format!(
-                "{implementation}, {} points: RMSE {} without low-pass filter, {} with H {} ({}): {} times as much without it.",
+                "{implementation}, {} points: RMSE {} without low-pass filter, {} with --lowpass {} --widen {}: {} times as much without it.",
                 format::count(points),
                 format::significant(without, 3),
                 format::significant(with, 3),

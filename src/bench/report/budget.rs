@@ -47,7 +47,9 @@ fn plots(page: &mut Page<'_>, session: &Session, exact: bool) -> io::Result<Vec<
     for (view, runs) in grouped(session.runs.iter().filter(compared), Run::view) {
         let candidates = candidates(runs);
         if !candidates.is_empty() {
-            let axes = [("time of a frame, ms", Scale::Log), (error, Scale::Log)];
+            let runs = candidates.iter().map(|candidate| candidate.run);
+            let time = format::time_heading(runs);
+            let axes = [(time.as_str(), Scale::Log), (error, Scale::Log)];
             let name = format!("time-error-{}", title(&view));
             plots.push(page.plot(Plot::of(name, title(&view), axes, lines(page, &candidates, exact)))?);
         }

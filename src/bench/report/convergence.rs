@@ -30,7 +30,7 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
             let how = format::selected_settings(setting, [true, true, true, true, false, false, false]);
             plots.push(html! { div {
                 (plot)
-                p.caption { (implementation.label()) ", " (how) ". " (sentence(&runs)) }
+                p.caption { code { (format::with_options(implementation, &how)) } ". " (sentence(&runs)) }
             } });
         }
     }

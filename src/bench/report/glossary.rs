@@ -41,7 +41,7 @@ fn terms() -> Markup {
         ),
         (
             "× baseline",
-            "median wall time relative to the CPU baseline, a plain native renderer, for the same scene, points and size with default settings, in the same session",
+            "median time relative to the CPU baseline, a plain native renderer, for the same scene, points and size with default settings, in the same session: of processor time, or of wall time on a GPU",
         ),
     ];
     html! { dl { @for (term, meaning) in terms { dt { (term) } dd { (meaning) } } } }

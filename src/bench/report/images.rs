@@ -50,9 +50,8 @@ fn words<'r>(images: &Images, runs: impl Iterator<Item = &'r Run>) -> Markup {
 
 fn caption(run: &Run) -> String {
     let mut words = vec![
-        run.implementation.label(),
+        format::with_options(&run.implementation, &format::options(run)),
         format!("{} points", format::count(run.points)),
-        format::run_settings(run, [true, true, true, false, false, false, false]),
     ];
     let metrics = [("rmse", "RMSE"), ("flip", "FLIP"), ("iou", "IoU")];
     let known = metrics.iter().filter_map(|(name, label)| Some((label, run.metric(name)?)));

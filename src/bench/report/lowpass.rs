@@ -21,11 +21,10 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
         let name = format!("lowpass-{}-{points}-{}", format::scene(scene), implementation.label());
         let error = lines(&runs, Run::rmse);
         let time = lines(&runs, Run::ms);
-        let axes = |y| [("low-pass variance H, px²", Scale::Linear), (y, Scale::Linear)];
+        let axes = |y| [("--lowpass, px²", Scale::Linear), (y, Scale::Linear)];
+        let work = format::time_heading(runs.iter().copied());
         let mut plots = Vec::new();
-        for (what, y, lines) in
-            [("error", "RMSE, linear light", error), ("time", "time of a frame, ms", time)]
-        {
+        for (what, y, lines) in [("error", "RMSE, linear light", error), ("time", &*work, time)] {
             if !lines.is_empty() {
                 let plot = Plot::of(format!("{name}-{what}"), format!("{title}: {what}"), axes(y), lines);
                 plots.push(page.plot(plot)?);
@@ -38,8 +37,9 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
     }
     Ok((!groups.is_empty()).then(|| html! {
         p {
-            "The attribute footprint is widened by H; at H = 0 by just enough that each splat covers a pixel centre. F is the kernel's "
-            "cut-off in σ. " em { "all" } ": all splats are widened; " em { "small" } ": only splats smaller than the filter, up to its size."
+            code { "--lowpass" } ": variance that widens the attribute footprint, px²; 0 widens by just enough that each splat covers a pixel "
+            "centre. " code { "--cutoff" } ": where the kernel ends, σ. " code { "--widen all" } ": all splats are widened; "
+            code { "--widen small" } ": only splats smaller than the filter, up to its size."
         }
         @for group in &groups { (group) }
     }))
@@ -60,7 +60,11 @@ fn lines(runs: &[&Run], of: impl Fn(&Run) -> Option<f64>) -> Vec<Line> {
             runs.iter().filter_map(|run| Some([f64::from(run.settings.lowpass), of(run)?])).collect();
         let other = Some(widen) != first.as_ref();
         let nth = Style::nth(cutoffs.iter().position(|known| *known == cutoff).unwrap_or(0));
-        Line::new(format!("F {cutoff}, {widen}"), Style { dashed: other, hollow: other, ..nth }, points)
+        Line::new(
+            format!("--cutoff {cutoff} --widen {widen}"),
+            Style { dashed: other, hollow: other, ..nth },
+            points,
+        )
     };
     groups.into_iter().map(line).filter(|line| !line.points.is_empty()).collect()
 }
@@ -99,7 +103,7 @@ fn sentence(runs: &[&Run]) -> String {
 
 fn named(run: &Run) -> String {
     let RunSettings { cutoff, lowpass, widen, .. } = &run.settings;
-    format!("H {lowpass}, F {cutoff}, {widen}")
+    format!("--lowpass {lowpass} --cutoff {cutoff} --widen {widen}")
 }
 
 fn timed(run: &Run) -> String {

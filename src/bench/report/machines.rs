@@ -24,7 +24,7 @@ pub fn section(results: &Results) -> Option<Markup> {
             tbody { @for row in &rows { tr {
                 @let (scene, size, points, implementation, settings) = row;
                 td { (titled(scene, *size)) } td.number { (format::count(*points)) }
-                td { (implementation) @if !settings.is_empty() { ", " (settings) } }
+                td { (implementation) " " (settings) }
                 @for session in sessions {
                     td.number { (ratio(session, row).map(format::baseline_ratio).unwrap_or_else(|| "–".into())) }
                 }
@@ -38,7 +38,7 @@ fn runs(session: &Session) -> impl Iterator<Item = &Run> {
 }
 
 fn key(run: &Run) -> Key<'_> {
-    let settings = format::run_settings(run, [true, true, true, true, true, false, false]);
+    let settings = format::options(run);
     (&run.scene, run.size, run.points, run.implementation.label(), settings)
 }
 

@@ -48,8 +48,8 @@ fn frames(runs: &[Run]) -> String {
         }
     };
     format!(
-        "{} per run after {} warm-up frames; times are median, minimum and maximum of the caller's wall time of a frame, without \
-         read-back",
+        "{} per run after {} warm-up frames; frames of methods with the same points take turns; times are of a frame \
+         without read-back",
         counts(|time| time.frames),
         counts(|time| time.warmup)
     )
@@ -88,24 +88,26 @@ fn passes(session: &Session) -> Markup {
     html! { @if !timed.is_empty() {
         details {
             summary { "Times of the passes: " (timed.len()) " runs" }
-            p { "Median and range by the device's timestamps, ms, with wall time and processor time of all threads. H is the low-pass variance in px², F the cut-off in σ." }
+            p { "Median and range by the device's timestamps, ms, with the caller's wall time and the processor time of all threads; and why some times may not be those of the work." }
             div.scroll { table.passes {
                 thead { tr {
                     th scope="col" { "experiment" } th scope="col" { "scene" } th.number scope="col" { "points" } th scope="col" { "size" }
-                    th scope="col" { "implementation" } th scope="col" { "settings" }
+                    th scope="col" { "implementation" } th scope="col" { "options" }
                     @for name in &names { th.number scope="col" { (name) } }
                     th.number scope="col" { "device" } th.number scope="col" { "wall" } th.number scope="col" { "CPU" }
+                    th scope="col" { "disturbed" }
                 } }
                 tbody { @for (run, time) in &timed { tr {
                     td { (run.experiment.name()) } td { (format::scene(&run.scene)) }
                     td.number { (format::count(run.points)) } td { (format::size(run.size)) }
-                    td { (run.implementation.label()) } td { (format::run_settings(run, [true, true, true, false, true, false, false])) }
+                    td { (run.implementation.label()) } td { (format::options(run)) }
                     @for name in &names {
                         @let pass = time.passes.iter().find(|pass| pass.name == *name);
                         td.number { @if let Some(pass) = pass { (spread(pass.ms)) } }
                     }
                     td.number { @if let Some(device) = time.device { (spread(device)) } }
                     td.number { (spread(time.wall)) } td.number { (spread(time.cpu)) }
+                    td { (format::disturbances(session, run)) }
                 } } }
             } }
         }

@@ -56,7 +56,7 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
             let (growth, fixed) = (growth(&lines), fixed(&runs, over));
             let title = format!("Time over {}: {}", over.title, format::scene(scene));
             let name = format!("scaling-{}-{}", over.name, format::scene(scene));
-            let axes = [(over.axis, Scale::Log), ("time of a frame, ms", Scale::Log)];
+            let axes = [(over.axis, Scale::Log), (&format::time_heading(runs.iter().copied()), Scale::Log)];
             let plot = page.plot(Plot::of(name, title, axes, lines))?;
             plots.push(html! { div { (plot) p.caption { (fixed) " " (growth) } } });
         }
@@ -72,20 +72,15 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
 
 fn lines(page: &Page<'_>, runs: &[&Run], over: &ScalingAxis) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
-    let settings = format::differing_settings(runs.iter().copied());
     for ((implementation, setting), runs) in
-        grouped(runs.iter().copied(), |run| (&run.implementation, format::run_settings(run, settings)))
+        grouped(runs.iter().copied(), |run| (&run.implementation, format::options_among(run, runs)))
     {
         let mut points: Vec<_> = runs.iter().filter_map(|run| Some([(over.of)(run)?, run.ms()?])).collect();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let base = page.style(implementation);
         let alike = lines.iter().filter(|line| line.style.colour == base.colour).count();
         let style = Style { marker: base.marker + alike, hollow: alike > 0, dashed: alike > 0, ..base };
-        let label = if setting.is_empty() {
-            implementation.label()
-        } else {
-            format!("{}: {setting}", implementation.label())
-        };
+        let label = format::with_options(implementation, &setting);
         if !points.is_empty() {
             lines.push(Line::new(label, style, points));
         }

@@ -1,9 +1,10 @@
 //! Summary: the best setting for each budget of time and of error.
 
 use super::page::{Page, title};
+use crate::bench::disturbance::disturbances;
 use crate::bench::format;
 use crate::bench::recommendations::{Candidate, Column, Recommendations, within_error, within_time};
-use crate::bench::record::{Run, RunSettings, Session};
+use crate::bench::record::{RunSettings, Session};
 use crate::bench::standings::{Standing, standings};
 use crate::settings::methods::Method;
 use maud::{Markup, html};
@@ -17,20 +18,21 @@ pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
     let time = |budget: f64| format!("{} ms", format::ms(budget));
     let error = |budget: f64| format::significant(budget, 2);
     Ok(Some(html! {
-        (default_table(&standings))
+        (default_table(&standings, &format::time_heading(&session.runs)))
         p.lead {
             "The best of the methods' runs on the Pareto front: no other run is both faster and more exact. "
             @if multiples(session) { "× is the time relative to the CPU baseline, a plain native renderer. " }
             "Settings are listed where they differ from the method's defaults; those of the default method are "
-            (unbroken(&format::selected_settings(&RunSettings::defaults(), NAMED))) "."
+            code { (format::selected_settings(&RunSettings::defaults(), NAMED)) } "."
+            (disturbed(session))
         }
         h3 { "Least error within a time budget" }
-        (table("ms a frame", columns, times, time, |column, ms| {
+        (table(session, &format::time_heading(&session.runs), columns, times, time, |column, ms| {
             within_time(&column.front, ms).map(|best| (best, Vec::new()))
         }, true))
         h3 { "Least time within an error budget" }
         p { "Either: methods whose 95 % intervals of the median time overlap with that of the fastest." }
-        (table("RMSE", columns, errors, error, |column, rmse| {
+        (table(session, "RMSE", columns, errors, error, |column, rmse| {
             within_error(&column.front, rmse).map(|best| (best, column.as_fast(best, rmse)))
         }, false))
     }))
@@ -48,7 +50,7 @@ fn unranked(session: &Session) -> Option<Markup> {
 }
 
 /// What `surfel render` draws without options, among all methods.
-fn default_table(standings: &[Standing<'_>]) -> Markup {
+fn default_table(standings: &[Standing<'_>], time: &str) -> Markup {
     html! { @if !standings.is_empty() {
         h3 { "Without options" }
         p {
@@ -58,7 +60,7 @@ fn default_table(standings: &[Standing<'_>]) -> Markup {
         div.scroll { table.standings {
             thead { tr {
                 th scope="col" { "scene" } th scope="col" { "points" } th scope="col" { "place" } th scope="col" { "RMSE" }
-                th scope="col" { "ms a frame" } th scope="col" { "least RMSE" }
+                th scope="col" { (time) } th scope="col" { "least RMSE" }
             } }
             tbody { @for standing in standings { (standing_row(standing)) } }
         } }
@@ -91,6 +93,7 @@ fn standing_row(standing: &Standing<'_>) -> Markup {
 const NAMED: [bool; 7] = [true, true, true, true, true, true, false];
 
 fn table<'c, 'a>(
+    session: &Session,
     unit: &str,
     columns: &'c [Column<'a>],
     budgets: &[f64],
@@ -111,7 +114,7 @@ fn table<'c, 'a>(
                     @let found = best(column, *budget);
                     @let same = found.is_some() && std::mem::replace(before, found.clone()) == found;
                     @match found {
-                        Some((candidate, others)) => { td.same[same] { (cell(candidate, &others, error_first)) } }
+                        Some((candidate, others)) => { td.same[same] { (cell(session, candidate, &others, error_first)) } }
                         None => { td.none { "none" } }
                     }
                 }
@@ -120,7 +123,7 @@ fn table<'c, 'a>(
     }
 }
 
-fn cell(candidate: &Candidate<'_>, others: &[Candidate<'_>], error_first: bool) -> Markup {
+fn cell(session: &Session, candidate: &Candidate<'_>, others: &[Candidate<'_>], error_first: bool) -> Markup {
     let Candidate { run, ms, rmse } = candidate;
     let multiple = run.time.as_ref().and_then(|time| time.baseline_ratio).map(format::baseline_ratio);
     let time =
@@ -130,27 +133,28 @@ fn cell(candidate: &Candidate<'_>, others: &[Candidate<'_>], error_first: bool) 
     html! {
         strong { (first) } span { (second) }
         span { (format::count(run.points)) " points, " (run.implementation.label()) }
-        @let settings = unusual(run);
+        @let settings = format::options(run);
         @if !settings.is_empty() { span { (settings) } }
+        @let disturbances = format::disturbances(session, run);
+        @if !disturbances.is_empty() { span.disturbed { (disturbances) } }
         @for Candidate { run, ms, .. } in others {
             span { "either: " (format::count(run.points)) " points, " (run.implementation.label()) ", " (format::ms(*ms)) " ms" }
         }
     }
 }
 
+/// How many of the session's times may not be those of the work.
+fn disturbed(session: &Session) -> Markup {
+    let timed = session.runs.iter().filter(|run| run.time.is_some()).count();
+    let disturbed = session.runs.iter().filter(|run| !disturbances(session, run).is_empty()).count();
+    html! { @if disturbed > 0 {
+        " " strong.disturbed { "The times of " (disturbed) " of " (timed) " runs were disturbed" }
+        " and are marked: measure again on a quiet machine. Busy machine: logical processors that other programs used. Waited: the wall time of "
+        "a frame, and the one that its work takes in like runs."
+    } }
+}
+
 /// Whether there are times relative to the CPU baseline.
 fn multiples(session: &Session) -> bool {
     session.runs.iter().any(|run| run.time.as_ref().is_some_and(|time| time.baseline_ratio.is_some()))
-}
-
-/// A list that breaks only between its entries.
-fn unbroken(list: &str) -> String {
-    list.replace(' ', "\u{a0}").replace(",\u{a0}", ", ")
-}
-
-/// The settings that differ from the method's defaults.
-fn unusual(run: &Run) -> String {
-    let (own, preset) =
-        (format::settings(&run.settings), format::settings(&RunSettings::preset(&run.implementation.method)));
-    format::run_settings(run, std::array::from_fn(|i| NAMED[i] && own[i] != preset[i]))
 }
