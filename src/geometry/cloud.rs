@@ -61,13 +61,18 @@ impl Cloud {
         self.positions.len()
     }
 
-    /// About `count` points, evenly spread along the Z-curve of the bounds and in its order; all points if there are no more. Radii,
-    /// ellipses, clips, weights, triangles and lines are dropped, because they belong to the denser points: larger discs reach other edges.
+    /// The points [`spread`](Self::spread). Radii, ellipses, clips, weights, triangles and lines are dropped, because they belong to the denser
+    /// points: larger discs reach other edges.
     pub fn some(&self, count: usize) -> Self {
-        let order = order(&self.positions);
-        let (count, all) = (count.min(order.len()), order.len() as u64);
-        let kept: Vec<u32> = (0..count as u64).map(|i| order[(i * all / count as u64) as usize]).collect();
+        let kept = self.spread(count);
         Self { radii: None, ellipses: None, clips: None, weights: None, tangents: None, ..self.points(&kept) }
+    }
+
+    /// Indices of `count` points, evenly spread along the Z-curve of the bounds and in its order; all points if there are no more.
+    pub fn spread(&self, count: usize) -> Vec<u32> {
+        let order = order(&self.positions);
+        let (count, all) = (count.min(order.len()) as u64, order.len() as u64);
+        (0..count).map(|i| order[(i * all / count) as usize]).collect()
     }
 
     /// Whether there are ribbons or tubes.

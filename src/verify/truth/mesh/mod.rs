@@ -1,5 +1,6 @@
 //! Triangle meshes as exact surfaces.
 
+mod coarse;
 mod normals;
 pub(super) mod triangle;
 
@@ -36,21 +37,14 @@ impl Mesh {
             let cause = "a triangle has the index of a point that does not exist: export the mesh again";
             return Err(Error::input(name, cause));
         }
-        let boxes: Vec<_> = triangles
-            .par_iter()
-            .map(|corner| {
-                let [a, b, c] = corner.map(|corner| corners[corner as usize]);
-                [a.min(b).min(c), a.max(b).max(c)]
-            })
-            .collect();
-        let whole = boxes.iter().copied().reduce(union);
-        let Some([min, max]) = whole else {
+        let boxes = boxes(&corners, &triangles);
+        let Some(bounds) = bounds(&boxes) else {
             return Err(Error::input(name, "no triangles: give a mesh, or a built-in scene"));
         };
         let normals = normals::fill(cloud, &corners);
         let colours = cloud.colours.as_ref().map(decoded);
         let hierarchy = Hierarchy::new(&boxes);
-        Ok(Self { corners, normals, colours, triangles, hierarchy, bounds: Bounds::of_box(min, max) })
+        Ok(Self { corners, normals, colours, triangles, hierarchy, bounds })
     }
 
     /// Number of triangles.
@@ -61,6 +55,11 @@ impl Mesh {
     /// Always false: a mesh has triangles.
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty()
+    }
+
+    /// The corners' indices of each triangle.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
     }
 
     /// A text that identifies the mesh.
@@ -119,6 +118,20 @@ impl Traceable for Mesh {
     fn bounds(&self) -> Bounds {
         self.bounds
     }
+}
+
+/// Corners of the bounding box of each triangle.
+fn boxes(corners: &[DVec3], triangles: &[[u32; 3]]) -> Vec<[DVec3; 2]> {
+    let of = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|corner| corners[corner as usize]);
+        [a.min(b).min(c), a.max(b).max(c)]
+    };
+    triangles.par_iter().map(of).collect()
+}
+
+/// Bounds of all boxes; none without any.
+fn bounds(boxes: &[[DVec3; 2]]) -> Option<Bounds> {
+    boxes.iter().copied().reduce(union).map(|[min, max]| Bounds::of_box(min, max))
 }
 
 fn decoded(colours: &Colours) -> Vec<DVec3> {

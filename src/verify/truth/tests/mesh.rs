@@ -179,3 +179,41 @@ fn digests_tell_meshes_apart() {
     digests.dedup();
     assert_eq!(digests.len(), all.len());
 }
+
+#[test]
+fn a_coarse_mesh_is_closed_and_has_the_corners_that_were_kept() {
+    let cloud = sphere(64);
+    let fine = Mesh::new("sphere", &cloud).unwrap();
+    let kept = cloud.spread(600);
+    let coarse = fine.coarse(&kept).unwrap();
+    // A triangle between three cells has neighbours across all its edges.
+    let mut edges = std::collections::HashMap::new();
+    for [a, b, c] in coarse.triangles() {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            *edges.entry((from, to)).or_insert(0) += 1;
+        }
+    }
+    for ((from, to), count) in &edges {
+        assert_eq!((*count, edges.get(&(*to, *from))), (1, Some(&1)), "{from} {to}");
+    }
+    // A closed surface of genus 0. Of corners that share a pole, some have no cell between them.
+    let corners: std::collections::HashSet<u32> = coarse.triangles().iter().flatten().copied().collect();
+    assert!(
+        corners.len() > 550 && coarse.len() == 2 * corners.len() - 4,
+        "{} {}",
+        corners.len(),
+        coarse.len()
+    );
+    // Rays from outside to the centre hit it from every side, near the sphere.
+    let mut random = Random::new(5, 0);
+    for _ in 0..500 {
+        let from = 3.0 * DVec3::new(random.normal(), random.normal(), random.normal()).normalize();
+        let hit = coarse.trace(from, -from).expect("a hole");
+        let radius = 3.0 * (1.0 - hit.t);
+        // 600 points leave cells of a radius of about 0.1: chords 0.02 inside.
+        assert!((0.95..1.0 + 1e-6).contains(&radius), "{radius}");
+    }
+    assert!(fine.coarse(&kept[..2]).is_err_and(|error| error.to_string().contains("no triangle")));
+    let again = fine.coarse(&(0..cloud.len() as u32).collect::<Vec<_>>()).unwrap();
+    assert!(again.bounds() == fine.bounds());
+}
