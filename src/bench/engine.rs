@@ -1,6 +1,10 @@
 //! Engines: every way to render, behind one interface.
 
-use super::record::{Axes, Clock, Implementation, Memory, PIXELS, SPLATS};
+mod traced;
+
+pub use traced::{RAYS, TracedEngine};
+
+use super::record::{Axes, Clock, Implementation, Memory, PIXELS, SPLATS, TRACED, Time};
 use crate::error::Result;
 use crate::geometry::{Camera, Surfels};
 use crate::picture::Picture;
@@ -24,6 +28,8 @@ pub enum Engine {
     },
     /// The CPU baseline.
     Baseline(Kind),
+    /// No points: the surface or the scan's triangles, ray traced on the CPU.
+    Traced,
 }
 
 impl Engine {
@@ -46,6 +52,7 @@ impl Engine {
             }
             Self::Baseline(Kind::Splats) => Implementation { method: SPLATS.into(), variant: String::new() },
             Self::Baseline(Kind::Pixels) => Implementation { method: PIXELS.into(), variant: String::new() },
+            Self::Traced => Implementation { method: TRACED.into(), variant: String::new() },
         }
     }
 }
@@ -89,6 +96,11 @@ pub trait LoadedEngine {
 
     /// Memory of the last frame.
     fn memory(&self) -> Memory;
+
+    /// The time of the last [`picture`](Self::picture), for an engine too slow to render more than one; otherwise none.
+    fn time_of_picture(&self) -> Option<Time> {
+        None
+    }
 }
 
 /// A model on a Vulkan device, with one renderer for colour alone and one that adds normals and depths.

@@ -8,6 +8,7 @@
 //! |---|---|
 //! | [`suites`] | sets of runs |
 //! | [`plan`] | one run: scene, engine, settings, measurements |
+//! | [`place`] | viewpoints relative to a subject's own |
 //! | [`subject`] | scenes of any number of points, with their exact surface |
 //! | [`engine`] | ways to render, behind one interface |
 //! | [`stopwatch`] | times of frames |
@@ -33,6 +34,7 @@ pub mod hidden;
 pub mod images;
 mod load;
 pub mod papers;
+pub mod place;
 pub mod plan;
 pub mod recommendations;
 pub mod record;

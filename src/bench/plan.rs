@@ -1,10 +1,10 @@
 //! Plans of runs.
 
 use super::engine::Engine;
+use super::place::Place;
 use super::record::{Axes, Experiment, RunSettings};
 use crate::settings::methods::Method;
 use crate::settings::{Choice, Settings};
-use crate::verify::scenes::Viewpoint;
 
 /// One run.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,8 +27,8 @@ pub struct Plan {
     pub engine: Engine,
     /// The settings.
     pub settings: Settings,
-    /// The viewpoint; that of the scene if `None`.
-    pub viewpoint: Option<Viewpoint>,
+    /// Where the picture is taken from.
+    pub place: Place,
     /// What is measured.
     pub measurements: Measurements,
     /// The run that its time is compared with, if any.
@@ -57,8 +57,13 @@ pub struct Measurements {
 impl Plan {
     /// Whether both have the same points, picture and purpose: their frames take turns.
     pub fn is_beside(&self, other: &Self) -> bool {
-        let what = |plan: &Self| (plan.points, plan.radius_scale, plan.size, plan.viewpoint, plan.experiment);
+        let what = |plan: &Self| (plan.points, plan.radius_scale, plan.size, plan.place, plan.experiment);
         self.scene == other.scene && what(self) == what(other) && self.paper_item == other.paper_item
+    }
+
+    /// Whether the settings are those of a method, but for the shading and its numbers.
+    pub(super) fn is_of(&self, method: &Method) -> bool {
+        self.settings.splatting == method.splatting && self.settings.pull_push == method.pull_push
     }
 
     /// The same run by a method with its own settings; the shading remains.

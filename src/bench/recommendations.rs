@@ -85,6 +85,14 @@ impl<'a> Column<'a> {
     }
 }
 
+impl Candidate<'_> {
+    /// Whether it takes less time, by the same clock.
+    pub fn is_faster_than(&self, other: &Self) -> bool {
+        let clock = |candidate: &Self| candidate.run.time.as_ref().map(|time| time.clock);
+        self.ms < other.ms && clock(self) == clock(other)
+    }
+}
+
 /// The runs that have a time and an error, both above 0.
 pub fn candidates<'a>(runs: impl IntoIterator<Item = &'a Run>) -> Vec<Candidate<'a>> {
     let candidate = |run: &'a Run| match (run.refused.is_none(), run.ms(), run.rmse()) {

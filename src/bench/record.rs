@@ -5,7 +5,7 @@ mod run;
 
 pub use run::{
     Against, Axes, Blended, Clock, Error, Experiment, Float64Error, Implementation, Memory, PIXELS, Pass,
-    Run, RunSettings, SPLATS, Terms, Time, View,
+    Run, RunSettings, SPLATS, TRACED, Terms, Time, View, Viewpoint,
 };
 
 use jiff::Timestamp;

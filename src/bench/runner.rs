@@ -1,6 +1,6 @@
 //! Executes plans, and caches what several runs share: surfels, exact pictures, the device.
 
-use super::engine::{CpuEngine, DeviceEngine, Engine, LoadedEngine};
+use super::engine::{CpuEngine, DeviceEngine, Engine, LoadedEngine, TracedEngine};
 use super::papers::details;
 use super::plan::Plan;
 use super::record::{self, Against, Float64Error, Images, Run, RunSettings, Time};
@@ -113,7 +113,7 @@ impl Runner {
     pub fn run(&mut self, plan: &Plan) -> Result<Run> {
         let mut only = None;
         self.run_together(std::slice::from_ref(plan), &mut |run| only = Some(run))?;
-        Ok(only.unwrap_or_else(|| blank(plan)))
+        Ok(only.unwrap_or_else(|| blank(plan, None)))
     }
 
     /// Executes plans that are [beside](Plan::is_beside) each other, and hands each run over in their order. The frames that are timed take
@@ -141,7 +141,10 @@ impl Runner {
                 match run {
                     Ok(run) => done(run),
                     Err(error) if error.is_device_lost() => return Err(error),
-                    Err(error) => done(Run { refused: Some(error.to_string()), ..blank(plan) }),
+                    Err(error) => {
+                        let viewpoint = self.subject(plan).ok().map(|subject| viewpoint(plan, &subject));
+                        done(Run { refused: Some(error.to_string()), ..blank(plan, viewpoint) })
+                    }
                 }
             }
         }
@@ -153,20 +156,26 @@ impl Runner {
         self.images
     }
 
-    fn job<'a>(&mut self, plan: &'a Plan) -> Result<Job<'a>> {
+    /// The scene or scan of a plan; the last scene is kept.
+    fn subject(&mut self, plan: &Plan) -> Result<Rc<Subject>> {
         let known = self.subject.iter().chain(&self.scans).find(|subject| subject.name == plan.scene);
         let subject = match known {
             Some(subject) => subject.clone(),
             None => Rc::new(Subject::scene(&plan.scene)?),
         };
         self.subject = Some(subject.clone());
+        Ok(subject)
+    }
+
+    fn job<'a>(&mut self, plan: &'a Plan) -> Result<Job<'a>> {
+        let subject = self.subject(plan)?;
         let key = self.key(plan);
         let model = match self.model.take() {
             Some((of, model)) if of == key => model,
             _ => Rc::new(self.model(&subject, &key)?),
         };
         self.model = Some((key, model.clone()));
-        let viewpoint = plan.viewpoint.unwrap_or(subject.viewpoint());
+        let viewpoint = viewpoint(plan, &subject);
         let camera = subject.camera(&viewpoint, 0.0, plan.size)?;
         Ok(Job { plan, subject, model, viewpoint, camera })
     }
@@ -190,7 +199,7 @@ impl Runner {
     /// Loads the model of a plan into its engine.
     fn open<'a>(&mut self, plan: &'a Plan) -> Result<Opened<'a>> {
         let job = self.job(plan)?;
-        let engine = self.load(plan.engine, &job.model, plan.size)?;
+        let engine = self.load(&job, &job.model)?;
         Ok(Opened { job, engine })
     }
 
@@ -206,7 +215,7 @@ impl Runner {
     fn fill(&mut self, opened: Opened<'_>, time: Option<Time>) -> Result<Run> {
         let Opened { job, mut engine } = opened;
         let (plan, settings) = (job.plan, &job.plan.settings);
-        let mut run = Run { time, ..blank(plan) };
+        let mut run = Run { time, ..blank(plan, Some(job.viewpoint)) };
         run.points = job.model.surfels.len() as u64;
         run.overlap = job.subject.area().map(|area| overlap(&job.model.surfels, area));
         if let Some(base) = &plan.base {
@@ -241,6 +250,7 @@ impl Runner {
             });
         }
         run.memory = engine.memory();
+        run.time = run.time.or(engine.time_of_picture());
         Ok(run)
     }
 
@@ -252,20 +262,25 @@ impl Runner {
         base: &Plan,
     ) -> Result<Option<Statistics>> {
         let other = self.job(base)?;
-        let mut others = self.load(base.engine, &other.model, base.size)?;
+        let mut others = self.load(&other, &other.model)?;
         let first = (&mut *others, &other.camera, &base.settings);
         let second = (engine, &job.camera, &job.plan.settings);
         stopwatch::ratio(first, second, &self.options.effort)
     }
 
-    fn load(&mut self, engine: Engine, model: &Rc<Model>, size: [u32; 2]) -> Result<Box<dyn LoadedEngine>> {
-        match engine {
+    /// The engine of a job with `model` instead of its own.
+    fn load(&mut self, job: &Job<'_>, model: &Rc<Model>) -> Result<Box<dyn LoadedEngine>> {
+        let Plan { size, points, .. } = *job.plan;
+        match job.plan.engine {
             Engine::Splatting { rasterizer, precision } => {
                 let rasterizer = rasterizer.map_or(self.options.rasterizer, RasterizerChoice::Require);
                 let scene = self.scene(model)?;
                 Ok(Box::new(DeviceEngine::new(self.device()?, scene, size, rasterizer, precision)?))
             }
             Engine::Baseline(kind) => Ok(Box::new(CpuEngine::new(&model.surfels, size, kind)?)),
+            Engine::Traced => {
+                Ok(Box::new(TracedEngine::new(&job.subject, points, size, self.options.truth.filter)?))
+            }
         }
     }
 
@@ -326,7 +341,7 @@ impl Runner {
         let clean = if visible.is_empty() {
             Picture { size: picture.size, colour: vec![[0.0; 4]; picture.colour.len()], ..Default::default() }
         } else {
-            let mut engine = self.load(job.plan.engine, &Rc::new(visible.into()), job.plan.size)?;
+            let mut engine = self.load(job, &Rc::new(visible.into()))?;
             engine.picture(&job.camera, &job.plan.settings)?
         };
         if let Some(error) = &mut run.error {
@@ -436,15 +451,28 @@ fn bytes_about(plan: &Plan) -> u64 {
     120 * u64::from(plan.size[0]) * u64::from(plan.size[1]) + 100 * plan.points
 }
 
+fn viewpoint(plan: &Plan, subject: &Subject) -> Viewpoint {
+    plan.place.viewpoint(&subject.viewpoint(), &subject.bounds())
+}
+
 /// A run without results.
-fn blank(plan: &Plan) -> Run {
+fn blank(plan: &Plan, from: Option<Viewpoint>) -> Run {
+    let viewpoint = from.map(|Viewpoint { eye, target, up, fov_y_deg }| record::Viewpoint {
+        place: plan.place.name().into(),
+        eye,
+        target,
+        up,
+        fov_y_deg,
+    });
     Run {
         suite: plan.suite.into(),
         experiment: plan.experiment,
         paper_item: plan.paper_item.clone(),
         scene: plan.scene.clone(),
         points: plan.points,
+        radius_scale: plan.radius_scale,
         size: plan.size,
+        viewpoint,
         implementation: plan.engine.implementation(&plan.settings),
         settings: RunSettings::of(&plan.settings),
         refused: None,

@@ -52,7 +52,8 @@ pub fn measure(options: &SessionOptions, progress: &dyn Progress) -> (Session, R
             truth: suite.truth(),
             effort: suite.effort(),
         };
-        let (mut runner, before) = (Runner::new(of_suite, options.inputs.subjects.clone()), images.len());
+        let (mut runner, before) =
+            (Runner::new(of_suite, options.inputs.all().cloned().collect()), images.len());
         let done = plans(suite).chunk_by(Plan::is_beside).try_for_each(|plans| {
             let (begin, plan) = (Instant::now(), &plans[0]);
             runner.run_together(plans, &mut |mut run| {

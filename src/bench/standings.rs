@@ -21,9 +21,12 @@ pub struct Standing<'a> {
     pub best: Candidate<'a>,
     /// Whether none has a greater error than the default method.
     pub is_worst: bool,
-    /// CPU baselines that are both faster and more exact than every method.
-    pub baselines: Vec<Candidate<'a>>,
+    /// Baselines that are more exact than every method, and whether they are faster than every method, too.
+    pub baselines: Vec<(Candidate<'a>, bool)>,
 }
+
+/// A smaller difference of errors is none.
+const LESS: f64 = 0.99;
 
 /// Standings of every scene, size and shading, in the order of the runs.
 pub fn standings(session: &Session) -> Vec<Standing<'_>> {
@@ -41,9 +44,9 @@ fn standing<'a>(view: View<'a>, runs: &[&'a Run]) -> Option<Standing<'a>> {
         let best = methods.iter().copied().min_by(|a, b| a.rmse.total_cmp(&b.rmse))?;
         let better = methods.iter().filter(|candidate| candidate.rmse < default.rmse).count();
         let baselines = own.iter().filter(|candidate| candidate.run.implementation.is_baseline());
-        let beats = |baseline: &&Candidate<'_>| {
-            methods.iter().all(|method| baseline.ms < method.ms && baseline.rmse < method.rmse)
-        };
+        let is_exact =
+            |baseline: &&Candidate<'_>| methods.iter().all(|method| baseline.rmse < LESS * method.rmse);
+        let is_fast = |baseline: &Candidate<'_>| methods.iter().all(|method| baseline.is_faster_than(method));
         (methods.len() > 1).then(|| Standing {
             view,
             points,
@@ -52,7 +55,7 @@ fn standing<'a>(view: View<'a>, runs: &[&'a Run]) -> Option<Standing<'a>> {
             methods: methods.len(),
             best,
             is_worst: methods.iter().all(|candidate| candidate.rmse <= default.rmse),
-            baselines: baselines.filter(beats).copied().collect(),
+            baselines: baselines.filter(is_exact).map(|baseline| (*baseline, is_fast(baseline))).collect(),
         })
     });
     all.max_by_key(|standing| (standing.methods, standing.points))

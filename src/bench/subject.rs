@@ -35,6 +35,8 @@ enum Shape {
 struct Scan {
     cloud: Cloud,
     mesh: Option<Mesh>,
+    /// Whether the mesh's corners are the points.
+    is_of_points: bool,
 }
 
 /// A built-in surface.
@@ -76,6 +78,7 @@ impl Subject {
         let other =
             mesh.map(|mesh| Ok::<_, Error>(formats::read(mesh, &triangles, progress)?.cloud)).transpose()?;
         let name = path.display().to_string();
+        let is_of_points = other.is_none();
         let mesh = match (mesh, other) {
             (Some(mesh), Some(other)) => Some(Mesh::new(&mesh.display().to_string(), &other)?),
             _ if cloud.triangles.is_empty() => None,
@@ -89,7 +92,13 @@ impl Subject {
             },
         };
         let (viewpoint, digest) = (framing(&bounds)?, mesh.as_ref().map(Mesh::digest).unwrap_or_default());
-        Ok(Self { name, digest, viewpoint, bounds, shape: Shape::Scan(Box::new(Scan { cloud, mesh })) })
+        Ok(Self {
+            name,
+            digest,
+            viewpoint,
+            bounds,
+            shape: Shape::Scan(Box::new(Scan { cloud, mesh, is_of_points })),
+        })
     }
 
     /// Greatest number of points; none if there is no limit.
@@ -155,6 +164,21 @@ impl Subject {
         match &self.shape {
             Shape::Built(built) => Some(built),
             Shape::Scan(scan) => scan.mesh.as_ref().map(|mesh| mesh as &dyn truth::Traceable),
+        }
+    }
+
+    /// The triangles between `points` points of a scan with triangles, those of its [`model`](Self::model). None if there are no triangles, or if
+    /// they come from another file: the exact surface takes their place.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if so few points span no triangle.
+    pub fn coarse_mesh(&self, points: u64) -> Result<Option<Mesh>> {
+        match &self.shape {
+            Shape::Scan(scan) if scan.is_of_points && points < scan.cloud.len() as u64 => {
+                let kept = scan.cloud.spread(points as usize);
+                scan.mesh.as_ref().map(|mesh| mesh.coarse(&kept)).transpose()
+            }
+            _ => Ok(None),
         }
     }
 

@@ -11,7 +11,7 @@ use surfel::bench::record::FORMAT;
 use surfel::bench::subject::Subject;
 use surfel::bench::suites::UserInputs;
 use surfel::bench::{Results, SessionOptions, Suite, code, csv, measure, report, table};
-use surfel::formats::atomic;
+use surfel::formats::{self, atomic};
 use surfel::load::scene;
 use surfel::settings::Choice;
 use surfel::vk::Device;
@@ -110,6 +110,28 @@ fn subject(args: &Bench, input: &OsString, progress: &dyn Progress) -> Result<Rc
     }))
 }
 
+/// The scans of `--scans` that the suites measure, by name.
+fn scans(args: &Bench, suites: &[Suite], progress: &dyn Progress) -> Result<Vec<Rc<Subject>>> {
+    let Some(folder) = &args.scans else { return Ok(Vec::new()) };
+    let most = match suites {
+        _ if suites.contains(&Suite::Full) => usize::MAX,
+        _ if suites.contains(&Suite::Quick) => 1,
+        _ => return Err(Error::Usage("--scans: no suite measures them: give --suite quick or full".into())),
+    };
+    let entries = std::fs::read_dir(folder).map_err(Error::io(folder, "cannot read the folder"))?;
+    let paths = entries.map(|entry| entry.map(|entry| entry.path())).collect::<std::io::Result<Vec<_>>>();
+    let mut paths = paths.map_err(Error::io(folder, "cannot read the folder"))?;
+    let known = |path: &PathBuf| {
+        path.extension().is_some_and(|own| formats::extensions().any(|other| own.eq_ignore_ascii_case(other)))
+    };
+    paths.retain(known);
+    paths.sort();
+    if paths.is_empty() {
+        return Err(Error::input(folder.display().to_string(), "no scans: name a folder with PLY files"));
+    }
+    paths.iter().take(most).map(|path| Ok(Rc::new(Subject::scan(path, None, progress)?))).collect()
+}
+
 /// The command that repeats the measurement, without its outputs.
 fn command(args: &Bench, suites: &[Suite]) -> String {
     let mut words = vec!["surfel bench".to_owned()];
@@ -125,6 +147,7 @@ fn command(args: &Bench, suites: &[Suite]) -> String {
     option("size", args.size.map(|[width, height]| format!("{width}x{height}")));
     let named = suites.iter().filter(|suite| **suite != Suite::Inputs);
     option("suite", list(named.map(|suite| suite.name().to_owned()).collect()));
+    option("scans", path(&args.scans));
     option("device", args.device.device.clone());
     option("device-limits", path(&args.device.device_limits));
     words.extend(args.device.validate.then(|| "--validate".into()));
@@ -155,6 +178,7 @@ fn device(args: &Bench) -> Result<Option<Arc<Device>>> {
 /// What the options ask to measure.
 fn wanted(args: &Bench, suites: Vec<Suite>, progress: &dyn Progress) -> Result<SessionOptions> {
     let device = device(args)?;
+    let scans = scans(args, &suites, progress)?;
     Ok(SessionOptions {
         rasterizer: device
             .as_ref()
@@ -170,6 +194,7 @@ fn wanted(args: &Bench, suites: Vec<Suite>, progress: &dyn Progress) -> Result<S
             points: args.points.clone(),
             size: args.size,
             methods: args.method.clone(),
+            scans,
         },
         device,
         validated: args.device.validate,

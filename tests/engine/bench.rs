@@ -8,6 +8,7 @@ use std::rc::Rc;
 use std::time::Duration;
 use surfel::bench::Suite;
 use surfel::bench::engine::Engine;
+use surfel::bench::place::{Move, Place};
 use surfel::bench::plan::{Measurements, Plan};
 use surfel::bench::record::{Experiment, Run};
 use surfel::bench::runner::{Options, Runner};
@@ -37,7 +38,7 @@ fn plan(scene: &str, points: u64, side: u32) -> Plan {
         size: [side, side],
         engine: Engine::DEFAULT,
         settings: Settings { shading: Shading::Colour, ..Default::default() },
-        viewpoint: None,
+        place: Place::Own,
         measurements: Measurements { time: false, ..Measurements::BOTH },
         base: None,
     }
@@ -263,6 +264,51 @@ fn points_of_an_unknown_surface_are_compared_with_their_own_reference() {
 }
 
 #[test]
+fn tracing_stands_for_the_triangles_between_the_same_points() {
+    let folder = tempfile::tempdir().unwrap();
+    let [scan, points] = mesh_and_points(folder.path());
+    let subject = Rc::new(Subject::scan(&scan, None, &()).unwrap());
+    let without = Rc::new(Subject::scan(&points, None, &()).unwrap());
+    let most = subject.most_points().unwrap();
+    let options = Options { truth: TRUTH, effort: EFFORT, ..Default::default() };
+    let mut runner = Runner::new(options, vec![subject.clone(), without.clone()]);
+    let mut of = |scene: &str, points| {
+        let mut plan = Plan { engine: Engine::Traced, ..plan(scene, points, 64) };
+        plan.settings.shading = Shading::Lit;
+        runner.run(&plan).unwrap()
+    };
+    // The mesh is the truth itself; of fewer points it has larger triangles.
+    let [whole, some, few] = [most, 1000, 100].map(|points| of(&subject.name, points));
+    println!("RMSE {} {} {}", rmse(&whole), rmse(&some), rmse(&few));
+    assert!(rmse(&whole) < 0.01 && rmse(&some) > 1.2 * rmse(&whole) && rmse(&few) > 4.0 * rmse(&some));
+    // A scene's surface does not depend on its points.
+    let [some, few] = [1000, 100].map(|points| of("scene:sphere", points));
+    assert!(rmse(&some) == rmse(&few) && rmse(&some) < 0.01, "{} {}", rmse(&some), rmse(&few));
+    let time = some.time.unwrap();
+    assert!(time.frames == 1 && time.cpu.median > 0.0 && time.device.is_none());
+    assert!(of(&without.name, most).refused.is_some_and(|why| why.contains("no triangles")));
+}
+
+#[test]
+fn a_run_knows_where_its_picture_is_taken_from() {
+    let options = Options { truth: TRUTH, effort: EFFORT, ..Default::default() };
+    let mut runner = Runner::new(options, Vec::new());
+    let mut of = |place| {
+        let mut plan = Plan { place, engine: Engine::Traced, ..plan("scene:part", 1000, 48) };
+        plan.measurements.images = true;
+        runner.run(&plan).unwrap()
+    };
+    let runs = [Place::Own, Place::Moved(Move::Behind), Place::Moved(Move::Inside)].map(&mut of);
+    let from = runs.each_ref().map(|run| run.viewpoint.clone().unwrap());
+    assert_eq!(from.each_ref().map(|from| from.place.as_str()), ["own", "behind", "inside"]);
+    let [own, behind, _] = from.map(|from| from.eye);
+    assert!((own[0] + behind[0]).abs() < 1e-9 && (own[2] + behind[2]).abs() < 1e-9, "{own:?} {behind:?}");
+    let images = runner.images();
+    let [own, behind, inside] = runs.map(|run| images[run.images.unwrap()].rendered.clone());
+    assert!(own != behind && behind != inside);
+}
+
+#[test]
 fn inputs_are_rendered_by_every_method_lit_and_in_their_colours() {
     let folder = tempfile::tempdir().unwrap();
     let scan = folder.path().join("mesh.ply");
@@ -283,14 +329,17 @@ fn inputs_are_rendered_by_every_method_lit_and_in_their_colours() {
         own.map(|plan| plan.engine.implementation(&plan.settings).method).collect::<Vec<_>>()
     };
     let all = plans(Vec::new());
-    let mut expected: Vec<_> = Method::ALL.iter().map(|method| method.name).collect();
-    expected.extend(["perspective-ewa", "baseline-splats", "baseline-pixels"]);
+    // The first method also runs without a low-pass filter.
+    let mut expected = vec!["perspective-ewa"];
+    expected.extend(Method::ALL.iter().map(|method| method.name));
+    expected.extend(["baseline-splats", "baseline-pixels", "baseline-traced"]);
     assert_eq!(of(&all, &lit, Shading::Lit), expected);
     assert_eq!(of(&all, &lit, Shading::Colour), [""; 0]);
     assert_eq!(of(&all, &coloured, Shading::Lit), expected);
     assert_eq!(of(&all, &coloured, Shading::Colour), expected);
     let some = plans(vec![Method::named("sprites").unwrap()]);
-    assert_eq!(of(&some, &lit, Shading::Lit), ["sprites", "baseline-splats", "baseline-pixels"]);
+    let baselines = ["baseline-splats", "baseline-pixels", "baseline-traced"];
+    assert_eq!(of(&some, &lit, Shading::Lit), [&["sprites"][..], &baselines].concat());
 }
 
 #[test]

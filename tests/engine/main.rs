@@ -4,6 +4,7 @@
 mod agreement;
 mod baseline;
 mod bench;
+mod bench_advice;
 mod bench_report;
 mod capture;
 mod creases;

@@ -82,7 +82,9 @@ pub fn run(experiment: Experiment, scene: &str, points: u64, ms: f64, rmse: f64)
         paper_item: String::new(),
         scene: scene.into(),
         points,
+        radius_scale: 1.0,
         size: [512, 512],
+        viewpoint: Some(viewpoint()),
         implementation: implementation("compute"),
         settings: RunSettings::defaults(),
         refused: None,
@@ -351,4 +353,15 @@ fn images() -> Images {
     let png = "iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAIAAAD91JpzAAAAEElEQVR42mNoaGgAIgYIBQAlrgWBQ3Xg0wAAAABJRU5ErkJggg==";
     let [rendered, truth, flip] = [png; 3].map(str::to_owned);
     Images { title: "bumpy-sphere, 10 k points".into(), rendered, truth, flip }
+}
+
+/// A scene's own viewpoint.
+pub fn viewpoint() -> Viewpoint {
+    Viewpoint {
+        place: "own".into(),
+        eye: [0.0, 0.0, 3.0],
+        target: [0.0; 3],
+        up: [0.0, 1.0, 0.0],
+        fov_y_deg: 45.0,
+    }
 }

@@ -12,6 +12,8 @@ use std::collections::BTreeMap;
 pub const SPLATS: &str = "baseline-splats";
 /// Name of the CPU baseline for points of one pixel.
 pub const PIXELS: &str = "baseline-pixels";
+/// Name of the exact surface, or of the triangles between the same points of a scan, ray traced with 16 rays a pixel.
+pub const TRACED: &str = "baseline-traced";
 
 /// A scene rendered with one implementation and one set of settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -27,8 +29,14 @@ pub struct Run {
     pub scene: String,
     /// Number of surfels.
     pub points: u64,
+    /// Factor of the scene's radii.
+    #[serde(default = "one")]
+    pub radius_scale: f32,
     /// Width and height, px.
     pub size: [u32; 2],
+    /// Where the picture was taken from; none if the scene could not be opened.
+    #[serde(default)]
+    pub viewpoint: Option<Viewpoint>,
     /// Method and variant.
     pub implementation: Implementation,
     /// Settings that matter to time or error.
@@ -55,6 +63,25 @@ pub struct Run {
     pub images: Option<usize>,
 }
 
+const fn one() -> f32 {
+    1.0
+}
+
+/// The viewpoint of a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Viewpoint {
+    /// Name of the [place](crate::bench::place::Place) relative to the subject's own viewpoint, which is `own`.
+    pub place: String,
+    /// Position, world space.
+    pub eye: [f64; 3],
+    /// Point looked at, world space.
+    pub target: [f64; 3],
+    /// Up vector, world space.
+    pub up: [f64; 3],
+    /// Vertical angle of view, degrees.
+    pub fov_y_deg: f64,
+}
+
 /// The experiment that a run belongs to.
 #[derive(
     Clone,
@@ -77,6 +104,8 @@ pub struct Run {
 pub enum Experiment {
     /// Time against error, and error against the number of points.
     Budget,
+    /// Error and time from other sides, at other distances, and in other sizes.
+    Views,
     /// Cost and benefit of the low-pass filter: its variance, the kernel's cut-off, which splats it widens.
     Lowpass,
     /// Texture finer than pixels: a checkerboard to the horizon.
@@ -290,7 +319,7 @@ pub struct Memory {
 }
 
 /// What runs show: only their errors can be compared.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View<'r> {
     /// The scene with its parameters, without the number of points; or the file.
     pub scene: &'r str,
@@ -298,12 +327,19 @@ pub struct View<'r> {
     pub size: [u32; 2],
     /// The quantity that the picture shows.
     pub shading: &'r str,
+    /// Where it is taken from.
+    pub viewpoint: Option<&'r Viewpoint>,
 }
 
 impl Run {
     /// What it shows.
     pub fn view(&self) -> View<'_> {
-        View { scene: &self.scene, size: self.size, shading: &self.settings.shading }
+        View {
+            scene: &self.scene,
+            size: self.size,
+            shading: &self.settings.shading,
+            viewpoint: self.viewpoint.as_ref(),
+        }
     }
 
     /// Whether it is a method as `surfel render --method` runs it, without further options.
@@ -410,9 +446,9 @@ impl Float64Error {
 }
 
 impl Implementation {
-    /// Whether it is the [CPU baseline](crate::verify::baseline), which is no method.
+    /// Whether it is no method: the [CPU baseline](crate::verify::baseline), or ray tracing.
     pub fn is_baseline(&self) -> bool {
-        [SPLATS, PIXELS].contains(&self.method.as_str())
+        [SPLATS, PIXELS, TRACED].contains(&self.method.as_str())
     }
 
     /// The method and the variant's options.

@@ -5,7 +5,7 @@ use super::plot::{Kind, Line, Plot, Scale, Style};
 use crate::bench::format;
 use crate::bench::group::{distinct, grouped};
 use crate::bench::recommendations::{Candidate, candidates, front};
-use crate::bench::record::{Experiment, Run, Session};
+use crate::bench::record::{Experiment, Run, Session, TRACED};
 use maud::{Markup, html};
 use std::io;
 
@@ -19,7 +19,9 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
         p {
             "Lower left is better. A line joins the runs of a method over the number of points, with the settings of least error for "
             "each number. Pale markers are its other settings. Rings mark what "
-            code { "surfel render" } " draws without options, but for the shading. Dashed lines are the CPU baseline, which is no method."
+            code { "surfel render" } " draws without options, but for the shading. Dashed lines are the CPU baseline, which is no method. "
+            code { (TRACED) } " below the plots is what tracing 16 rays a pixel gives: of the exact surface of a built-in scene, or of the "
+            "triangles between the same points of a scan."
         }
         @if !exact.is_empty() {
             p {
@@ -51,10 +53,23 @@ fn plots(page: &mut Page<'_>, session: &Session, exact: bool) -> io::Result<Vec<
             let time = format::time_heading(runs);
             let axes = [(time.as_str(), Scale::Log), (error, Scale::Log)];
             let name = format!("time-error-{}", title(&view));
-            plots.push(page.plot(Plot::of(name, title(&view), axes, lines(page, &candidates, exact)))?);
+            let (traced, drawn): (Vec<_>, Vec<_>) =
+                candidates.into_iter().partition(|candidate| candidate.run.implementation.method == TRACED);
+            let plot = page.plot(Plot::of(name, title(&view), axes, lines(page, &drawn, exact)))?;
+            plots.push(html! { div { (plot) (far_below(&traced)) } });
         }
     }
     Ok(plots)
+}
+
+/// Ray tracing, in words: on the plot it would take the methods' room.
+fn far_below(traced: &[Candidate<'_>]) -> Markup {
+    let one = |candidate: &Candidate<'_>| {
+        let (rmse, ms) = (format::significant(candidate.rmse, 2), format::ms(candidate.ms));
+        format!("{}: RMSE {rmse} in {ms} ms of CPU time", format::count(candidate.run.points))
+    };
+    let all = traced.iter().map(one).collect::<Vec<_>>().join("; ");
+    html! { @if !traced.is_empty() { p.caption { code { (TRACED) } ", by points: " (all) "." } } }
 }
 
 fn lines(page: &Page<'_>, candidates: &[Candidate<'_>], exact: bool) -> Vec<Line> {

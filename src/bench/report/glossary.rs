@@ -39,6 +39,12 @@ fn terms() -> Markup {
             "float64 error",
             "largest difference of linear colour and α from the float64 reference, without pixels whose decisions rounding can flip",
         ),
+        ("baseline-splats", "the CPU baseline: surfels as EWA splats by a plain native renderer"),
+        ("baseline-pixels", "the CPU baseline: points of one pixel with a depth test"),
+        (
+            "baseline-traced",
+            "16 rays a pixel, traced in float64 on the CPU with the truth's filter: the exact surface of a built-in scene; of a scan the triangles between the same points",
+        ),
         (
             "× baseline",
             "median time relative to the CPU baseline, a plain native renderer, for the same scene, points and size with default settings, in the same session: of processor time, or of wall time on a GPU",

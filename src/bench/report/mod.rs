@@ -17,6 +17,7 @@ mod provenance;
 mod pull_push;
 mod scaling;
 mod summary;
+mod views;
 
 use super::record::Results;
 use crate::error::{Error, Result};

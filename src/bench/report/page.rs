@@ -3,10 +3,11 @@
 use super::plot::{Plot, Style, draw};
 use super::{
     aliasing, baseline, budget, convergence, effects, glossary, hard, images, lowpass, machines, papers,
-    provenance, scaling, summary,
+    provenance, scaling, summary, views,
 };
 use crate::bench::format;
 use crate::bench::group::distinct;
+use crate::bench::place;
 use crate::bench::record::{Implementation, Results, Session, View};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::io;
@@ -33,9 +34,10 @@ struct Section {
     content: Content,
 }
 
-const SECTIONS: [Section; 12] = [
+const SECTIONS: [Section; 13] = [
     Section { id: "summary", title: "Summary", content: summary::content },
     Section { id: "budget", title: "Time against error", content: budget::content },
+    Section { id: "views", title: "Other views", content: views::content },
     Section { id: "convergence", title: "Error against points", content: convergence::content },
     Section { id: "lowpass", title: "Low-pass", content: lowpass::content },
     Section { id: "aliasing", title: "Aliasing", content: aliasing::content },
@@ -169,9 +171,10 @@ fn slug(name: &str) -> String {
     words.collect::<Vec<_>>().join("-").to_lowercase()
 }
 
-/// A scene, a size and a shading, as a title.
-pub fn title(View { scene, size, shading }: &View<'_>) -> String {
-    format!("{}, {shading}", titled(scene, *size))
+/// A scene, a size, a shading and, unless it is the scene's own, a viewpoint, as a title.
+pub fn title(View { scene, size, shading, viewpoint }: &View<'_>) -> String {
+    let place = viewpoint.filter(|from| from.place != place::OWN).map(|from| format!(", {}", from.place));
+    format!("{}, {shading}{}", titled(scene, *size), place.unwrap_or_default())
 }
 
 /// A scene and a size, as a title.

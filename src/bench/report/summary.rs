@@ -78,9 +78,11 @@ fn standing_row(standing: &Standing<'_>) -> Markup {
             td.number { (format::ms(default.ms)) }
             td {
                 (format::significant(best.rmse, 3)) " by " (best.run.implementation.label()) " in " (format::ms(best.ms)) " ms"
-                @for baseline in baselines {
+                @for (baseline, is_fast) in baselines {
                     div {
-                        strong { (baseline.run.implementation.label()) " is faster and more exact than every method" }
+                        strong { (baseline.run.implementation.label())
+                            @if *is_fast { " is faster and more exact than every method" } @else { " is more exact than every method" }
+                        }
                         ": RMSE " (format::significant(baseline.rmse, 3)) " in " (format::ms(baseline.ms)) " ms"
                     }
                 }

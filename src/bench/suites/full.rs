@@ -1,18 +1,29 @@
-//! Every scene, at every density.
+//! Every scene, by every method.
 
-use super::{Suite, aliasing, baseline, lowpass, methods, plan};
+use super::{Suite, UserInputs, aliasing, every, inputs, lowpass, plan};
+use crate::bench::place::{Move, Place};
 use crate::bench::plan::{Measurements, Plan};
 use crate::bench::record::Experiment;
-use crate::verify::baseline::Kind;
+use crate::bench::subject::Subject;
+use crate::settings::Shading;
 use crate::verify::scenes;
+use std::rc::Rc;
+use strum::VariantArray;
 
 const SIZE: [u32; 2] = [512, 512];
 const POINTS: [u64; 5] = [10_000, 30_000, 100_000, 300_000, 1_000_000];
+/// Number of points of the runs with pictures and from other viewpoints.
+const MIDDLE: u64 = 100_000;
+/// Sides of the other pictures, px.
+const SIDES: [u32; 4] = [64, 128, 256, 1024];
 
-pub(super) fn plans() -> Vec<Plan> {
+/// `scans` are rendered at every density as the user's inputs are.
+pub(super) fn plans(scans: &[Rc<Subject>]) -> Vec<Plan> {
     let scenes = || scenes::list().iter().map(|scene| scene.name);
-    let mut plans: Vec<_> =
-        scenes().flat_map(|scene| POINTS.map(|points| budget(scene, points))).flatten().collect();
+    let mut plans: Vec<_> = scenes().flat_map(densities).collect();
+    let scans = UserInputs { subjects: scans.to_vec(), ..Default::default() };
+    plans.extend(inputs::plans(Suite::Full, &scans));
+    plans.extend(scenes().flat_map(views));
     let (variances, cutoffs) = ([0.0, 0.25, 0.5, 0.75, 1.0], [1.5, 2.0, 2.5, 3.0, 4.0]);
     for (scene, points) in
         [("scene:bumpy-sphere", 100_000), ("scene:bumpy-sphere", 1_000_000), ("scene:plane", 1_000_000)]
@@ -23,22 +34,32 @@ pub(super) fn plans() -> Vec<Plan> {
     plans
 }
 
-/// Smooth and sharp, every other method, and the CPU baseline.
-fn budget(scene: &str, points: u64) -> Vec<Plan> {
-    let smooth = plan(Suite::Full, Experiment::Budget, scene, points, SIZE);
-    let mut sharp = smooth.clone();
-    sharp.settings.lowpass = 0.0;
-    let measurements = Measurements {
-        terms: true,
-        float64_error: points <= 100_000,
-        images: points == 100_000,
-        ..Measurements::BOTH
+fn lit(experiment: Experiment, scene: &str, points: u64) -> Plan {
+    let mut plan = plan(Suite::Full, experiment, scene, points, SIZE);
+    plan.settings.shading = Shading::Lit;
+    plan
+}
+
+/// A scene at every density, lit and in its colours.
+fn densities(scene: &str) -> Vec<Plan> {
+    let each = |(points, shading)| {
+        let mut plan = lit(Experiment::Budget, scene, points);
+        plan.settings.shading = shading;
+        // Pictures of every method are shown for one scene only.
+        let images = points == MIDDLE && shading == Shading::Lit;
+        let float64_error = points <= MIDDLE;
+        plan.measurements = Measurements { terms: true, float64_error, images, ..Measurements::BOTH };
+        let others = Measurements { images: images && scene == "scene:bumpy-sphere", ..Measurements::BOTH };
+        every(plan, others)
     };
-    let plain = [Kind::Splats, Kind::Pixels].map(|kind| baseline(&smooth, kind));
-    // Images of every method are shown for one scene only.
-    let images = measurements.images && scene == "scene:bumpy-sphere";
-    let others = methods(&smooth)
-        .map(|plan| Plan { measurements: Measurements { images, ..Measurements::BOTH }, ..plan });
-    let others: Vec<Plan> = others.collect();
-    [Plan { measurements, ..smooth }, sharp].into_iter().chain(others).chain(plain).collect()
+    let shadings = [Shading::Lit, Shading::Colour];
+    POINTS.into_iter().flat_map(|points| shadings.map(|shading| (points, shading))).flat_map(each).collect()
+}
+
+/// A scene from other sides and distances, and in other sizes.
+fn views(scene: &str) -> Vec<Plan> {
+    let middle = lit(Experiment::Views, scene, MIDDLE);
+    let moved = Move::VARIANTS.iter().map(|how| Plan { place: Place::Moved(*how), ..middle.clone() });
+    let sized = SIDES.map(|side| Plan { size: [side; 2], ..middle.clone() });
+    moved.chain(sized).flat_map(|plan| every(plan, Measurements::BOTH)).collect()
 }

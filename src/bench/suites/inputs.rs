@@ -1,11 +1,12 @@
 //! Inputs of the user.
 
-use super::{Suite, baseline, plan};
+use super::{Suite, every, plan};
+use crate::bench::engine::Engine;
 use crate::bench::plan::{Measurements, Plan};
 use crate::bench::record::Experiment;
 use crate::bench::subject::Subject;
 use crate::settings::Shading;
-use crate::settings::methods::{Method, perspective_ewa};
+use crate::settings::methods::Method;
 use crate::verify::baseline::Kind;
 use std::rc::Rc;
 
@@ -25,22 +26,33 @@ pub struct UserInputs {
     pub size: Option<[u32; 2]>,
     /// The methods; all if empty.
     pub methods: Vec<Method>,
+    /// Scans that [`Suite::Quick`], the first one only, and [`Suite::Full`] measure beside built-in scenes.
+    pub scans: Vec<Rc<Subject>>,
+}
+
+impl UserInputs {
+    /// All inputs and scans.
+    pub fn all(&self) -> impl Iterator<Item = &Rc<Subject>> {
+        self.subjects.iter().chain(&self.scans)
+    }
 }
 
 /// Time against error of each input, lit and in its own colours, by every method at every density.
-pub(super) fn plans(inputs: &UserInputs) -> Vec<Plan> {
+pub(super) fn plans(suite: Suite, inputs: &UserInputs) -> Vec<Plan> {
     let each = |subject: &Rc<Subject>| {
         let densities = densities(subject, &inputs.points);
         let pictured = densities.iter().copied().min_by_key(|points| points.abs_diff(PICTURED));
-        let plans = |points| {
-            let shadings = [Shading::Lit, Shading::Colour];
-            let shadings =
-                shadings.into_iter().filter(|shading| *shading == Shading::Lit || subject.is_coloured());
-            shadings
-                .flat_map(move |shading| budget(subject, inputs, points, shading, Some(points) == pictured))
-                .collect::<Vec<_>>()
-        };
-        densities.iter().copied().flat_map(plans).collect::<Vec<_>>()
+        let shadings = [Shading::Lit, Shading::Colour];
+        let shadings: Vec<_> = shadings
+            .into_iter()
+            .filter(|shading| *shading == Shading::Lit || subject.is_coloured())
+            .collect();
+        let all = densities.iter().flat_map(|points| shadings.iter().map(|shading| (*points, *shading)));
+        all.flat_map(|(points, shading)| {
+            let plan = shown(suite, inputs, subject, points, shading);
+            budget(plan, subject, &inputs.methods, Some(points) == pictured)
+        })
+        .collect::<Vec<_>>()
     };
     inputs.subjects.iter().flat_map(each).collect()
 }
@@ -56,28 +68,27 @@ fn densities(subject: &Subject, given: &[u64]) -> Vec<u64> {
     densities
 }
 
-fn budget(subject: &Subject, inputs: &UserInputs, points: u64, shading: Shading, images: bool) -> Vec<Plan> {
+/// The default plan of an input.
+fn shown(suite: Suite, inputs: &UserInputs, subject: &Subject, points: u64, shading: Shading) -> Plan {
+    let size = inputs.size.unwrap_or(if subject.surface().is_some() { [768; 2] } else { [384; 2] });
+    let mut plan = plan(suite, Experiment::Budget, &subject.name, points, size);
+    plan.settings.shading = shading;
+    plan
+}
+
+/// The plan by `methods`, or by all if there are none, and by the baselines.
+fn budget(mut plan: Plan, subject: &Subject, methods: &[Method], images: bool) -> Vec<Plan> {
     let known = subject.surface().is_some();
-    let size = inputs.size.unwrap_or(if known { [768; 2] } else { [384; 2] });
-    let mut default = plan(Suite::Inputs, Experiment::Budget, &subject.name, points, size);
-    default.settings.shading = shading;
-    default.measurements = Measurements { images, ..Measurements::BOTH };
-    let methods = if inputs.methods.is_empty() { &Method::ALL[..] } else { &inputs.methods };
-    let mut plans: Vec<_> = methods.iter().map(|method| default.by(method)).collect();
-    for plan in plans.iter_mut().filter(|plan| plan.settings == default.settings) {
-        plan.measurements.terms = known;
-        plan.measurements.float64_error = points <= 100_000;
+    let others = Measurements { images, ..Measurements::BOTH };
+    plan.measurements = Measurements { terms: known, float64_error: plan.points <= 100_000, ..others };
+    let wanted = |plan: &Plan| methods.is_empty() || methods.iter().any(|method| plan.is_of(method));
+    let mut plans = every(plan, others);
+    plans.retain(|plan| plan.engine != Engine::DEFAULT || wanted(plan));
+    if !known {
+        // Points of one pixel have no reference of their own, and there is nothing to trace.
+        plans.retain(|plan| plan.engine != Engine::Traced);
+        let pixels = plans.iter_mut().filter(|plan| plan.engine == Engine::Baseline(Kind::Pixels));
+        pixels.for_each(|plan| plan.measurements = Measurements::TIME);
     }
-    if methods.contains(&perspective_ewa::METHOD) {
-        let mut sharp = default.clone();
-        sharp.settings.lowpass = 0.0;
-        sharp.measurements = Measurements::BOTH;
-        plans.push(sharp);
-    }
-    let mut pixels = baseline(&default, Kind::Pixels);
-    // It has no reference of its own.
-    pixels.measurements = if known { Measurements::BOTH } else { Measurements::TIME };
-    let splats = Plan { measurements: Measurements::BOTH, ..baseline(&default, Kind::Splats) };
-    plans.extend([splats, pixels]);
     plans
 }

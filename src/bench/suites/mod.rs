@@ -17,6 +17,7 @@ mod scaling;
 pub use inputs::UserInputs;
 
 use super::engine::Engine;
+use super::place::Place;
 use super::plan::{Measurements, Plan};
 use super::record::Experiment;
 use super::stopwatch::Effort;
@@ -45,7 +46,7 @@ use strum::VariantArray;
 pub enum Suite {
     /// A first impression of everything, in a minute on two cores.
     Quick,
-    /// Every scene, from 10⁴ to 10⁶ points.
+    /// Every scene by every method, lit and unlit, from 10⁴ to 10⁶ points, from every side, near, far and inside, from 64² to 1024² px.
     Full,
     /// Numerically hard cases: float32 against float64.
     Hard,
@@ -66,17 +67,16 @@ impl Suite {
         None => &[],
     };
 
-    /// The runs, those of one scene one after the other; none for the hard cases, which are sweeps. `inputs` are the
-    /// user's.
+    /// The runs, those of one scene one after the other; none for the hard cases, which are sweeps.
     pub fn plans(self, inputs: &UserInputs) -> Vec<Plan> {
         match self {
-            Self::Quick => quick::plans(),
-            Self::Full => full::plans(),
+            Self::Quick => quick::plans(&inputs.scans),
+            Self::Full => full::plans(&inputs.scans),
             Self::Hard => Vec::new(),
             Self::Scaling => scaling::plans(),
             Self::Baseline => baseline::plans(),
             Self::Papers => papers::plans(),
-            Self::Inputs => inputs::plans(inputs),
+            Self::Inputs => inputs::plans(Suite::Inputs, inputs),
         }
     }
 
@@ -117,7 +117,7 @@ pub(super) fn plan(suite: Suite, experiment: Experiment, scene: &str, points: u6
         size,
         engine: Engine::DEFAULT,
         settings: Settings { shading, ..Default::default() },
-        viewpoint: None,
+        place: Place::Own,
         measurements: Measurements::BOTH,
         base: None,
     }
@@ -128,6 +128,25 @@ fn methods(plan: &Plan) -> impl Iterator<Item = Plan> + use<> {
     let plan = plan.clone();
     let others = Method::ALL.into_iter().filter(|method| *method != perspective_ewa::METHOD);
     others.map(move |method| plan.by(&method))
+}
+
+/// The plan, the same without a low-pass filter, and by every other method and baseline, which measure time, error and `others`.
+fn every(plan: Plan, others: Measurements) -> Vec<Plan> {
+    let others = Measurements { time: true, error: true, ..others };
+    let mut sharp = Plan { measurements: Measurements::BOTH, ..plan.clone() };
+    sharp.settings.lowpass = 0.0;
+    let methods: Vec<_> = methods(&plan).map(|plan| Plan { measurements: others, ..plan }).collect();
+    let baselines = baselines(&plan);
+    [plan, sharp].into_iter().chain(methods).chain(baselines).collect()
+}
+
+/// Time and error of every baseline.
+fn baselines(plan: &Plan) -> [Plan; 3] {
+    [Engine::Baseline(Kind::Splats), Engine::Baseline(Kind::Pixels), Engine::Traced].map(|engine| Plan {
+        engine,
+        measurements: Measurements::BOTH,
+        ..plan.clone()
+    })
 }
 
 /// The same plan by the CPU baseline.
@@ -189,7 +208,8 @@ mod tests {
                     assert!(Subject::scene(&plan.scene).is_ok(), "{}", plan.scene);
                 }
                 assert!(plan.settings.check().is_ok());
-                assert!(plan.viewpoint.is_none() || [Suite::Papers, Suite::Scaling].contains(&suite));
+                let given = matches!(plan.place, Place::Given(_));
+                assert!(!given || [Suite::Papers, Suite::Scaling].contains(&suite));
             }
         }
     }

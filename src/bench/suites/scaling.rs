@@ -1,6 +1,7 @@
 //! Time against points, pixels and overlap.
 
 use super::{Suite, baseline, methods, plan};
+use crate::bench::place::Place;
 use crate::bench::plan::{Measurements, Plan};
 use crate::bench::record::Experiment;
 use crate::settings::methods::{Method, pull_push};
@@ -50,6 +51,6 @@ fn filled(method: &Method) -> Plan {
     let viewpoint =
         Viewpoint { eye: [0.0, 14.0, 0.0], target: [0.0; 3], up: [0.0, 0.0, -1.0], fov_y_deg: 45.0 };
     let plan = plan(Suite::Scaling, Experiment::Filled, "scene:relief?height=0", 4_000_000, SIZE);
-    Plan { measurements: Measurements::TIME, viewpoint: Some(viewpoint), radius_scale: 4.0, ..plan }
+    Plan { measurements: Measurements::TIME, place: Place::Given(viewpoint), radius_scale: 4.0, ..plan }
         .by(method)
 }

@@ -29,6 +29,9 @@ pub struct Bench {
     /// Suites to measure [default: quick, unless INPUT or --from is given]
     #[arg(long, value_parser = one_of(Suite::BUILT_IN), value_delimiter = ',', value_name = "SUITE,…")]
     pub suite: Vec<Suite>,
+    /// Folder of scans that quick, the first one by name only, and full measure beside the built-in scenes
+    #[arg(long, value_name = "DIR")]
+    pub scans: Option<PathBuf>,
     /// Adds the results that --json of an earlier call wrote, on this computer or another
     #[arg(long, value_name = "FILE")]
     pub from: Vec<PathBuf>,

@@ -2,6 +2,7 @@
 
 use super::Effect;
 use crate::bench::papers::method;
+use crate::bench::place::Place;
 use crate::bench::plan::{Measurements, Plan};
 use crate::bench::record::Experiment;
 use crate::bench::suites::{Suite, plan};
@@ -27,13 +28,13 @@ fn each<const N: usize>(plan: &Plan, splattings: [Splatting; N]) -> Vec<Plan> {
 }
 
 /// A viewpoint with y up.
-fn view(eye: [f64; 3], target: [f64; 3], fov_y_deg: f64) -> Option<Viewpoint> {
-    Some(Viewpoint { eye, target, up: [0.0, 1.0, 0.0], fov_y_deg })
+fn view(eye: [f64; 3], target: [f64; 3], fov_y_deg: f64) -> Place {
+    Place::Given(Viewpoint { eye, target, up: [0.0, 1.0, 0.0], fov_y_deg })
 }
 
 pub fn axis_offset(effect: &Effect) -> Vec<Plan> {
     let mut plan = effect.plan("scene:slabs?slabs=2&gap=0.6&clips=off", 20_000, 192);
-    plan.viewpoint = view([0.3, 3.0, 0.3], [3.2, 0.4, 0.3], 75.0);
+    plan.place = view([0.3, 3.0, 0.3], [3.2, 0.4, 0.3], 75.0);
     plan.settings.epsilon = 4.0;
     let along = |visibility| Splatting { visibility, ..Splatting::default() };
     each(&plan, [along(Visibility::Axis), along(Visibility::Ray)])
@@ -51,7 +52,7 @@ pub fn perspective_holes(effect: &Effect) -> Vec<Plan> {
     // Grids have discs of 1.5 spacings; half the diagonal between neighbours is 0.71, and samples are slightly
     // jittered.
     plan.radius_scale = 0.56;
-    plan.viewpoint = view([-2.0, 0.6, 7.2], [-2.0, 3.0, -2.0], 125.0);
+    plan.place = view([-2.0, 0.6, 7.2], [-2.0, 3.0, -2.0], 125.0);
     let affine = Splatting { footprint: Footprint::Affine, ..Splatting::default() };
     let mut plans = each(&plan, [Splatting::default(), affine]);
     plans.extend(Method::SPLATTING[1..].iter().map(|method| plan.by(method)));
@@ -84,7 +85,7 @@ const fn confetti(a: f32, n: f32) -> (Kernel, f32) {
 
 pub fn kernel_blur(effect: &Effect) -> Vec<Plan> {
     let mut plan = effect.plan("scene:relief?height=0&frequency=2", 20_000, 192);
-    plan.viewpoint = view([0.0, 3.0, 0.5], [0.0; 3], 60.0);
+    plan.place = view([0.0, 3.0, 0.5], [0.0; 3], 60.0);
     let gaussian = |sigma: f32| (Kernel::Gaussian, 1.5 / sigma);
     kernels(&plan, [confetti(1.0, 2.0), confetti(4.0, 5.0), confetti(6.0, 3.0), gaussian(0.5), gaussian(0.8)])
 }
