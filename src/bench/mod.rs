@@ -17,11 +17,13 @@
 //! | [`runner`], [`session`] | execution of plans |
 //! | [`papers`] | effects, costs and tables of the papers |
 //! | [`hard`] | numerically hard cases: float32 against float64 |
+//! | [`command`] | the command of a picture |
 //! | [`record`] | results, as stored in JSON |
 //! | [`table`], [`csv`], [`report`] | results as text, CSV and HTML |
 //! | [`recommendations`], [`standings`], [`convergence`] | evaluation of the results |
 
 pub mod code;
+pub mod command;
 pub mod convergence;
 pub mod csv;
 pub mod disturbance;

@@ -323,6 +323,9 @@ impl Runner {
         Ok(record::Error {
             against: if job.subject.surface().is_some() { Against::Surface } else { Against::OwnReference },
             filter: filter_name(&self.options.truth),
+            surface: job.subject.surface_name().into(),
+            target: self.options.truth.error,
+            most_samples: self.options.truth.most_samples,
             truth_rms: truth.error.rms,
             metrics: finite.map(|(name, value)| (name.into(), value)).collect(),
             terms: error_terms::split(&pair),

@@ -35,6 +35,8 @@ enum Shape {
 struct Scan {
     cloud: Cloud,
     mesh: Option<Mesh>,
+    /// File of the mesh; empty if there is none.
+    mesh_name: String,
     /// Whether the mesh's corners are the points.
     is_of_points: bool,
 }
@@ -79,11 +81,13 @@ impl Subject {
             mesh.map(|mesh| Ok::<_, Error>(formats::read(mesh, &triangles, progress)?.cloud)).transpose()?;
         let name = path.display().to_string();
         let is_of_points = other.is_none();
+        let file_of_mesh = mesh.unwrap_or(path).display().to_string();
         let mesh = match (mesh, other) {
             (Some(mesh), Some(other)) => Some(Mesh::new(&mesh.display().to_string(), &other)?),
             _ if cloud.triangles.is_empty() => None,
             _ => Some(Mesh::new(&name, &cloud)?),
         };
+        let mesh_name = if mesh.is_some() { file_of_mesh } else { String::new() };
         let bounds = match &mesh {
             Some(mesh) => truth::Traceable::bounds(mesh),
             None => match Bounds::of(&cloud.positions) {
@@ -97,7 +101,7 @@ impl Subject {
             digest,
             viewpoint,
             bounds,
-            shape: Shape::Scan(Box::new(Scan { cloud, mesh, is_of_points })),
+            shape: Shape::Scan(Box::new(Scan { cloud, mesh, mesh_name, is_of_points })),
         })
     }
 
@@ -164,6 +168,14 @@ impl Subject {
         match &self.shape {
             Shape::Built(built) => Some(built),
             Shape::Scan(scan) => scan.mesh.as_ref().map(|mesh| mesh as &dyn truth::Traceable),
+        }
+    }
+
+    /// The scene, or the file whose triangles are the exact surface; empty if it is unknown.
+    pub fn surface_name(&self) -> &str {
+        match &self.shape {
+            Shape::Built(_) => &self.name,
+            Shape::Scan(scan) => &scan.mesh_name,
         }
     }
 

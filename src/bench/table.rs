@@ -3,7 +3,7 @@
 use super::disturbance::{Disturbance, disturbances};
 use super::group::grouped;
 use super::record::{Experiment, Faults, Float64Error, Results, Run, Session, Sweep, SweepPoint};
-use super::{format, papers};
+use super::{format, papers, place};
 use crate::settings::Choice;
 use std::fmt::Write;
 
@@ -31,8 +31,8 @@ const HEADERS: [(&str, Align); 18] = [
     ("MiB", Align::Right),
     ("disturbed", Align::Left),
 ];
-/// Columns that may be cut: method, options and disturbances.
-const CUTTABLE: [usize; 3] = [2, 3, 17];
+/// Columns that may be cut, with their least width: method and options.
+const CUTTABLE: [(usize, usize); 2] = [(2, 18), (3, 10)];
 
 #[derive(Clone, Copy)]
 enum Align {
@@ -55,6 +55,9 @@ pub fn table(results: &Results, code: &str, commit: &str) -> String {
             let common = common(session, &group);
             let (suite, shading) = (&run.suite, &run.settings.shading);
             let _ = write!(text, "\n{suite} · {} · {} · {shading}", run.experiment.name(), run.scene);
+            if let Some(from) = run.viewpoint.as_ref().filter(|from| from.place != place::OWN) {
+                let _ = write!(text, " · {}", from.place);
+            }
             for (_, cell) in &common {
                 let _ = write!(text, " · {cell}");
             }
@@ -68,12 +71,15 @@ pub fn table(results: &Results, code: &str, commit: &str) -> String {
     text
 }
 
-/// Runs of one suite, experiment, scene and shading, in the order of their first; without those of the papers' own tables.
+/// Runs of one suite, experiment, scene, shading and viewpoint, in the order of their first; without those of the papers' own tables.
 fn groups(runs: &[Run]) -> Vec<Vec<&Run>> {
     let own = runs.iter().filter(|run| {
         !matches!(run.experiment, Experiment::Effects | Experiment::Claims | Experiment::PaperTables)
     });
-    let groups = grouped(own, |run| (&run.suite, run.experiment, &run.scene, &run.settings.shading));
+    let groups = grouped(own, |run| {
+        let place = run.viewpoint.as_ref().map(|from| from.place.as_str());
+        (&run.suite, run.experiment, &run.scene, &run.settings.shading, place)
+    });
     groups.into_iter().map(|(_, runs)| runs).collect()
 }
 
@@ -126,7 +132,9 @@ fn widths(rows: &[Vec<String>], columns: &[usize]) -> Vec<usize> {
     let total = widths.iter().map(|width| width + 2).sum::<usize>();
     let mut excess = total.saturating_sub(WIDTH + 2);
     while excess > 0 {
-        let cuttable = (0..columns.len()).filter(|&i| CUTTABLE.contains(&columns[i]) && widths[i] > 8);
+        let is_cuttable =
+            |i: &usize| CUTTABLE.iter().any(|(column, least)| columns[*i] == *column && widths[*i] > *least);
+        let cuttable = (0..columns.len()).filter(is_cuttable);
         let Some(widest) = cuttable.max_by_key(|&i| widths[i]) else { break };
         widths[widest] -= 1;
         excess -= 1;
@@ -176,7 +184,7 @@ fn cells(session: &Session, run: &Run, runs: &[&Run]) -> Vec<String> {
 /// Disturbances of a run's times, in words.
 fn disturbed(session: &Session, run: &Run) -> String {
     let word = |disturbance: &Disturbance| match disturbance {
-        Disturbance::Busy(_) => "busy machine",
+        Disturbance::Busy(_) => "busy",
         Disturbance::Waited(_) => "waited",
     };
     disturbances(session, run).iter().map(word).collect::<Vec<_>>().join(", ")

@@ -7,6 +7,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
+use surfel::bench::command::quoted;
 use surfel::bench::record::FORMAT;
 use surfel::bench::subject::Subject;
 use surfel::bench::suites::UserInputs;
@@ -152,15 +153,6 @@ fn command(args: &Bench, suites: &[Suite]) -> String {
     option("device-limits", path(&args.device.device_limits));
     words.extend(args.device.validate.then(|| "--validate".into()));
     words.join(" ")
-}
-
-/// Quotes a word for a shell, if needed.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,=+@%".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        return word.to_owned();
-    }
-    format!("'{}'", word.replace('\'', r"'\''"))
 }
 
 /// Opens the device. Without any, logs a warning and returns `None`: the CPU baseline needs none.

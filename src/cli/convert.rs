@@ -22,6 +22,7 @@ pub fn run(args: &Convert) -> Result<()> {
     let options = LoadOptions {
         estimate: args.estimate(),
         polygons: args.points.polygons,
+        points: args.points.points,
         lines: args.lines,
         simplify: args.simplify_lines,
         voxel: args.voxel,

@@ -63,6 +63,7 @@ pub fn run(args: &Render) -> Result<()> {
     let options = LoadOptions {
         estimate: args.points.estimate(),
         polygons: args.points.polygons,
+        points: args.points.points,
         colouring,
         texture: args.colours.texture()?,
         ..Default::default()

@@ -66,6 +66,7 @@ fn loader(args: &View, up: DVec3) -> Result<viewer::Load> {
     let options = LoadOptions {
         estimate: args.points.estimate(),
         polygons: args.points.polygons,
+        points: args.points.points,
         texture: args.colours.texture()?,
         ..Default::default()
     };

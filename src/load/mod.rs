@@ -30,6 +30,8 @@ pub struct LoadOptions {
     pub lines: Option<ToLines>,
     /// Tolerance of the simplification of lines, in the positions' unit; `None` keeps all vertices.
     pub simplify: Option<f64>,
+    /// Number of points kept of each file, evenly spread, without lines and faces; `None` keeps all.
+    pub points: Option<u64>,
     /// Side of the voxels that keep one point each, in the positions' unit; `None` keeps all points.
     pub voxel: Option<f64>,
     /// What the points are coloured by; `None` for their own colours.
@@ -108,6 +110,7 @@ pub fn load(
 impl Load<'_> {
     fn all(&self, inputs: &[&OsStr]) -> Result<LoadedModel> {
         self.check_property(inputs)?;
+        self.check_points(inputs)?;
         let (mut parts, mut read, mut dropped) = (Vec::new(), 0, Dropped::default());
         let mut skipped: Vec<String> = Vec::new();
         for input in inputs {
@@ -158,6 +161,16 @@ impl Load<'_> {
         )))
     }
 
+    /// Fails if a built-in scene, which can have any number of points, should keep some.
+    fn check_points(&self, inputs: &[&OsStr]) -> Result<()> {
+        match (self.options.points, inputs.iter().find_map(|input| scene(input))) {
+            (Some(points), Some(scene)) => Err(Error::Usage(format!(
+                "{scene}: a built-in scene has its number of points in its name: add points={points} there"
+            ))),
+            _ => Ok(()),
+        }
+    }
+
     /// Reads an input; the report is that of a file.
     fn read(&self, input: &OsStr) -> Result<(Part, Option<Report>)> {
         #[cfg(feature = "scenes")]
@@ -173,6 +186,7 @@ impl Load<'_> {
         let Loaded { cloud, report } = formats::read(Path::new(input), &options, self.listener)?;
         let name = Path::new(input).display().to_string();
         warn(&name, &report);
+        let cloud = self.options.points.map(|points| cloud.some(points as usize)).unwrap_or(cloud);
         Ok((Part { name, cloud, draws_faces: false }, Some(report)))
     }
 

@@ -1,6 +1,7 @@
 //! `surfel bench`.
 
 use crate::program::Program;
+use base64::prelude::{BASE64_STANDARD, Engine};
 use serde_json::Value;
 
 fn json(program: &Program, name: &str) -> Value {
@@ -69,4 +70,46 @@ fn invalid_arguments_of_bench_are_refused_first() {
     assert!(refused("scene:torus?points=5", 2).contains("leave out `points`"));
     assert!(refused("scene:torus --truth mesh.ply", 2).contains("its own truth"));
     assert!(refused("--from later.json --json a --csv a", 2).contains("name two"));
+}
+
+/// Pixels of a PNG in base64.
+fn pixels(png: &Value) -> image::RgbaImage {
+    image::load_from_memory(&BASE64_STANDARD.decode(png.as_str().unwrap()).unwrap()).unwrap().into_rgba8()
+}
+
+#[test]
+fn the_command_beside_a_picture_renders_it_again() {
+    let Some(program) = Program::with_device("the_command_beside_a_picture_renders_it_again") else { return };
+    // A scene, a file with triangles that is thinned, and its points against the mesh of another file.
+    let mesh = "scene:hybrid?points=9&primitives=on&segments=12";
+    assert_eq!(program.run(&format!("convert {mesh} --output mesh.ply")).code, 0);
+    assert_eq!(program.run("convert scene:hybrid?points=3000 --output points.ply").code, 0);
+    for input in ["scene:torus?minor=0.3", "mesh.ply", "points.ply --truth mesh.ply"] {
+        let most = if input.starts_with("mesh") { 120 } else { 2000 };
+        let options = format!("--points {most} --size 72x64 --method perspective-ewa,object-ewa,pull-push");
+        assert_eq!(
+            program.run(&format!("bench {input} {options} --json a.json --report page --quiet")).code,
+            0
+        );
+        let page = std::fs::read_to_string(program.path("page/index.html")).unwrap();
+        let session = &json(&program, "a.json")["sessions"][0];
+        let mut commands = page.split("<pre><code>").skip(1).map(|rest| {
+            let command = rest.split("</code>").next().unwrap().replace("&amp;", "&").replace('\'', "");
+            command.strip_prefix("surfel ").unwrap().to_owned()
+        });
+        let images = session["images"].as_array().unwrap();
+        assert!(images.len() >= 3, "{input}");
+        for images in images {
+            for (name, file) in [("rendered", "out.png"), ("truth", "truth.png")] {
+                let command = commands.next().unwrap();
+                let run = program.run(&command);
+                assert_eq!(run.code, 0, "{command}: {}", run.err);
+                // The near plane is that of the remaining points: pull–push's depths are rounded otherwise.
+                let (found, expected) = (program.png(file), pixels(&images[name]));
+                let difference = found.iter().zip(expected.iter()).map(|(a, b)| a.abs_diff(*b)).max();
+                assert!(found.dimensions() == expected.dimensions() && difference <= Some(1), "{command}");
+            }
+        }
+        assert_eq!(commands.next(), None);
+    }
 }

@@ -93,6 +93,9 @@ pub fn run(experiment: Experiment, scene: &str, points: u64, ms: f64, rmse: f64)
         error: Some(Error {
             against: Against::Surface,
             filter: "gaussian".into(),
+            surface: scene.into(),
+            target: 1.0 / 1024.0,
+            most_samples: 1024,
             truth_rms: 4e-4,
             metrics: BTreeMap::from(metrics.map(|(name, value)| (name.to_owned(), value))),
             terms: Terms {

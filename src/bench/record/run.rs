@@ -258,6 +258,15 @@ pub struct Error {
     pub against: Against,
     /// The pixel filter of the truth: `gaussian`, of a variance of 1 px², or `box`.
     pub filter: String,
+    /// The scene or file that `surfel truth` traces; empty where the surface is unknown.
+    #[serde(default)]
+    pub surface: String,
+    /// Standard error that the truth was to meet at every pixel.
+    #[serde(default)]
+    pub target: f64,
+    /// Greatest number of rays per pixel.
+    #[serde(default)]
+    pub most_samples: u32,
     /// Root mean square of the truth's own standard error.
     pub truth_rms: f64,
     /// Metrics by name; infinite ones and those that could not be computed are absent.

@@ -1,6 +1,6 @@
 //! Images beside the truth and the perceived difference.
 
-use super::page::{Page, title};
+use super::page::{self, Page, title};
 use crate::bench::format;
 use crate::bench::record::{Experiment, Images, Run, Session};
 use maud::{Markup, html};
@@ -23,7 +23,9 @@ pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
                 div.row { @for (name, png) in pictures(images, is_own(session, index)) {
                     img src={ "data:image/png;base64," (png) } alt={ (images.title) ": " (name) };
                 } }
-                figcaption { (words(images, session.runs.iter().filter(|run| run.images == Some(index)))) }
+                @let runs: Vec<_> = session.runs.iter().filter(|run| run.images == Some(index)).collect();
+                figcaption { (words(images, &runs)) }
+                @for run in runs { (page::commands(run)) }
             }
         }
     }))
@@ -40,10 +42,9 @@ fn pictures(images: &Images, is_own: bool) -> [(&'static str, &str); 3] {
 }
 
 /// The runs that the images belong to, or the title if there are none.
-fn words<'r>(images: &Images, runs: impl Iterator<Item = &'r Run>) -> Markup {
-    let runs: Vec<&Run> = runs.collect();
+fn words(images: &Images, runs: &[&Run]) -> Markup {
     html! {
-        @for run in &runs { strong { (title(&run.view())) } ": " (caption(run)) ". " }
+        @for run in runs { strong { (title(&run.view())) } ": " (caption(run)) ". " }
         @if runs.is_empty() { strong { (images.title) } }
     }
 }

@@ -5,10 +5,11 @@ use super::{
     aliasing, baseline, budget, convergence, effects, glossary, hard, images, lowpass, machines, papers,
     provenance, scaling, summary, views,
 };
+use crate::bench::command;
 use crate::bench::format;
 use crate::bench::group::distinct;
 use crate::bench::place;
-use crate::bench::record::{Implementation, Results, Session, View};
+use crate::bench::record::{Implementation, Results, Run, Session, View};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::io;
 
@@ -162,6 +163,17 @@ impl<'a> Page<'a> {
         let numbered = (2..).map(|number| format!("{name}-{number}"));
         let free = std::iter::once(name.to_owned()).chain(numbered).find(|name| !taken(name));
         free.unwrap_or_default()
+    }
+}
+
+/// The commands of a run's picture and exact picture, to be opened.
+pub fn commands(run: &Run) -> Markup {
+    let Some(commands) = command::commands(run) else { return html! {} };
+    html! {
+        details.commands {
+            summary { "commands" }
+            @for command in commands.into_iter().flatten() { pre { code { (command) } } }
+        }
     }
 }
 

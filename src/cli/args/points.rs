@@ -15,6 +15,9 @@ use surfel::settings::Choice;
 /// How normals and radii are estimated.
 #[derive(Args, Debug)]
 pub struct Points {
+    /// Renders N points of each file, evenly spread, with estimated radii and without lines and faces [default: all, as the file has them]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
+    pub points: Option<u64>,
     /// Radius of every surfel, in the positions' unit [default: the file's, or else estimated]
     #[arg(long, value_name = "R", value_parser = positive::<f32>, allow_hyphen_values = true)]
     pub radius: Option<f32>,
