@@ -6,7 +6,7 @@ use crate::formats::{self, ReadOptions};
 use crate::geometry::{Bounds, Camera, Cloud, Model};
 use crate::progress::Progress;
 use crate::verify::scenes::{self, Surface, Viewpoint};
-use crate::verify::truth::{self, Hit, Mesh};
+use crate::verify::truth::{self, Mesh};
 use glam::{DQuat, DVec3};
 use std::path::Path;
 
@@ -26,7 +26,7 @@ pub struct Subject {
 
 enum Shape {
     /// A built-in scene.
-    Built(Built),
+    Built(Box<dyn Surface>),
     /// A scan.
     Scan(Box<Scan>),
 }
@@ -41,19 +41,6 @@ struct Scan {
     is_of_points: bool,
 }
 
-/// A built-in surface.
-struct Built(Box<dyn Surface>);
-
-impl truth::Traceable for Built {
-    fn trace(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
-        truth::Traceable::trace(&*self.0, origin, direction)
-    }
-
-    fn bounds(&self) -> Bounds {
-        truth::Traceable::bounds(&*self.0)
-    }
-}
-
 impl Subject {
     /// A built-in scene, named without its number of points.
     ///
@@ -65,7 +52,7 @@ impl Subject {
                 "{name}: the bench sets the number of points; leave out `points`"
             )));
         }
-        let built = Built(scenes::surface(name)?);
+        let built = scenes::surface(name)?;
         let (viewpoint, bounds) = (scenes::camera(name)?, truth::Traceable::bounds(&built));
         Ok(Self { name: name.into(), digest: name.into(), viewpoint, bounds, shape: Shape::Built(built) })
     }
@@ -158,7 +145,7 @@ impl Subject {
     /// Area of the surface, hidden parts included; none if unknown.
     pub fn area(&self) -> Option<f64> {
         match &self.shape {
-            Shape::Built(built) => Some(built.0.area()),
+            Shape::Built(built) => Some(built.area()),
             Shape::Scan(_) => None,
         }
     }

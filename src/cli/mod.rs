@@ -17,6 +17,8 @@ mod info;
 mod limits;
 mod log;
 mod manual;
+#[cfg(feature = "truth")]
+mod mesh;
 mod methods;
 mod needs;
 #[cfg(feature = "metrics")]

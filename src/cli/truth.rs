@@ -3,15 +3,15 @@
 use super::args::Truth;
 use super::camera;
 use super::files::cache_folder;
+use super::mesh;
 use super::progress::{self, Silent};
 use super::render::keep_layers;
 use std::path::Path;
 use surfel::formats::image::{Output, write};
-use surfel::formats::{self, ReadOptions};
 use surfel::geometry::{Bounds, Camera, Parts};
 use surfel::load::{LoadOptions, load, scene};
 use surfel::verify::scenes;
-use surfel::verify::truth::{self, Cache, Mesh, Traceable};
+use surfel::verify::truth::{self, Cache, Traceable};
 use surfel::{Error, Progress, Result, Settings};
 
 /// Ray-traces an input to a picture. Arguments and outputs are checked first.
@@ -31,7 +31,7 @@ pub fn run(args: &Truth) -> Result<()> {
     let mut truth = match scene(&args.input) {
         Some(name) => trace(args, name, &*scenes::surface(name)?, &camera, &*bars)?,
         None => {
-            let mesh = read(Path::new(&args.input), &*bars)?;
+            let (mesh, _) = mesh::read(&[&args.input], &LoadOptions::default(), &*bars)?;
             trace(args, &mesh.digest(), &mesh, &camera, &*bars)?
         }
     };
@@ -50,13 +50,6 @@ fn bounds(args: &Truth, progress: &dyn Progress) -> Result<Bounds> {
     let input = std::slice::from_ref(&args.input);
     let loaded = load(input, &LoadOptions::default(), &Silent(progress))?;
     Parts::from(&loaded.model).bounds().ok_or_else(|| Error::Usage("the input holds no points".into()))
-}
-
-/// Reads a mesh.
-fn read(path: &Path, progress: &dyn Progress) -> Result<Mesh> {
-    let options = ReadOptions { triangles: true, ..Default::default() };
-    let loaded = formats::read(path, &options, progress)?;
-    Mesh::new(&path.display().to_string(), &loaded.cloud)
 }
 
 /// Traces a scene, or reads its picture from the cache; `name` is its key.

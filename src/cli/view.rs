@@ -1,5 +1,7 @@
 //! `surfel view`.
 
+mod surface;
+
 use super::args::{self, View};
 use super::files::config_folder;
 use super::progress::{self, Silent};
@@ -72,6 +74,8 @@ fn loader(args: &View, up: DVec3) -> Result<viewer::Load> {
     };
     let reader = Reader { options, quiet: args.quiet };
     let (method, up) = (args.method, up.normalize_or(DVec3::Y));
+    // The triangles belong to the inputs of the command, not to files that are opened later.
+    let (truth, own) = (args.truth.clone(), args.inputs.clone());
     Ok(Arc::new(move |names: &[OsString], window: &dyn viewer::LoadListener| {
         let loaded = |model: Model| -> Result<Loaded> {
             let method = render::method(method, &model)?;
@@ -80,6 +84,8 @@ fn loader(args: &View, up: DVec3) -> Result<viewer::Load> {
         };
         let listener = WindowListener { window, loaded: &loaded, quiet: reader.quiet };
         let inputs = load(names, &reader.options, &listener)?;
+        let truth = truth.as_deref().filter(|_| *names == own);
+        let surface = surface::of_inputs(names, truth, &reader.options, &inputs);
         let whole = loaded(inputs.model)?;
         // Built-in scenes have no properties to read.
         let is_scene = names.iter().any(|name| scene(name).is_some());
@@ -87,10 +93,7 @@ fn loader(args: &View, up: DVec3) -> Result<viewer::Load> {
         let read = move |name: &str, progress: &dyn Progress| reader.property(&own, name, progress);
         let skipped = if is_scene { vec![] } else { inputs.skipped };
         Ok(Loaded {
-            surface: match names {
-                [one] => scene(one).map(Into::into),
-                _ => None,
-            },
+            surface,
             properties: Some(viewer::PointProperties { names: skipped, read: Arc::new(read) }),
             info: SceneInfo {
                 points: inputs.read,

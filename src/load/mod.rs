@@ -77,6 +77,8 @@ pub struct LoadedModel {
     pub coloured: Option<Coloured>,
     /// Names of the files' properties that are not used.
     pub skipped: Vec<String>,
+    /// Number of faces of each input, rendered or not.
+    pub faces: Vec<u64>,
 }
 
 /// Options and listener of a load.
@@ -112,9 +114,11 @@ impl Load<'_> {
         self.check_property(inputs)?;
         self.check_points(inputs)?;
         let (mut parts, mut read, mut dropped) = (Vec::new(), 0, Dropped::default());
-        let mut skipped: Vec<String> = Vec::new();
+        let (mut skipped, mut faces): (Vec<String>, Vec<u64>) = Default::default();
         for input in inputs {
             let (part, report) = self.read(input)?;
+            let triangles = part.cloud.triangles.len() as u64;
+            faces.push(report.as_ref().map_or(triangles, |report| report.faces.understood));
             read += report.as_ref().map_or(part.cloud.len() as u64, |report| report.points);
             if let Some(report) = report {
                 skipped.extend(report.skipped);
@@ -138,7 +142,7 @@ impl Load<'_> {
         let (model, estimated) = self.merge(parts)?;
         skipped.sort();
         skipped.dedup();
-        let mut loaded = LoadedModel { model, read, dropped, estimated, coloured, skipped };
+        let mut loaded = LoadedModel { model, read, dropped, estimated, coloured, skipped, faces };
         if let (Some(colouring), None) = (colouring, &loaded.coloured) {
             loaded.coloured = colouring.colour_model(&mut loaded.model, self.listener);
         }

@@ -23,6 +23,8 @@ pub enum Event<'a> {
     Cancelled,
     /// A picture of the scene was presented.
     Picture(PictureInfo<'a>),
+    /// The error panel has compared a picture.
+    Compared(ComparisonInfo<'a>),
     /// A screenshot or a camera was saved.
     Wrote { file: &'a Path },
     /// A camera was read from a file.
@@ -60,6 +62,21 @@ pub struct PictureInfo<'a> {
     pub took_ms: f64,
     /// The camera.
     pub camera: Fields,
+}
+
+/// The result of a comparison.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct ComparisonInfo<'a> {
+    /// What the picture was compared with.
+    pub against: &'a str,
+    /// Width and height of the picture, px.
+    pub picture: [u32; 2],
+    /// Root mean square difference, of linear colours over the background.
+    pub rmse: f64,
+    /// The largest difference of a channel.
+    pub worst: f32,
+    /// Time to render the reference or the exact picture, ms.
+    pub took_ms: f64,
 }
 
 /// The event log, if it is on.

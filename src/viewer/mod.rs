@@ -11,9 +11,11 @@ mod app;
 mod appearance;
 mod cached_view;
 mod choices;
+mod comparison;
 mod cost;
 mod directions;
 mod events;
+mod exact_surface;
 mod hud;
 mod input;
 mod job;
@@ -39,6 +41,7 @@ mod watch;
 mod window;
 
 pub use events::Events;
+pub use exact_surface::{ExactSurface, OpenSurface};
 use glam::DVec3;
 pub use load::{Load, LoadListener};
 pub use scene_info::SceneInfo;
@@ -95,8 +98,8 @@ impl Options {
 pub struct Loaded {
     /// The scene.
     pub model: Model,
-    /// Name of the built-in scene, if its surface is known exactly and nothing of it is changed.
-    pub surface: Option<String>,
+    /// The exact surface; or a sentence for the user: why there is none, and the remedy.
+    pub surface: std::result::Result<ExactSurface, String>,
     /// Further properties of the points; `None` for a preview.
     pub properties: Option<PointProperties>,
     /// What the points are first coloured by, if not by their own colours.
@@ -114,7 +117,7 @@ impl Loaded {
     pub fn new(model: Model, method: Method) -> Self {
         Self {
             model,
-            surface: None,
+            surface: Err("A preview has no exact surface: wait until all points are loaded.".into()),
             properties: None,
             colour_by: None,
             method,

@@ -1,6 +1,7 @@
 //! Source of a scene: the model that it was uploaded from, and the appearance that the user gives it.
 
 use super::appearance::{Appearance, ColourAttribute, SavedAppearance};
+use super::exact_surface::ExactSurface;
 use super::job::Job;
 use super::scene_info::SceneInfo;
 use super::{ColourBy, Loaded, PointProperties};
@@ -16,8 +17,8 @@ use surfel::{Error, Progress, Result, Scene};
 pub struct Source {
     /// The model as it was loaded.
     model: Arc<Model>,
-    /// Name of the built-in scene, if its surface is known exactly.
-    surface: Option<String>,
+    /// The exact surface, or why there is none.
+    surface: std::result::Result<ExactSurface, String>,
     /// Further properties of the points; `None` for a preview.
     properties: Option<PointProperties>,
     /// Properties that were read: index among the names, values of surfels and of vertices.
@@ -95,9 +96,12 @@ impl Source {
         &self.info
     }
 
-    /// Name of the built-in scene whose exact surface the picture shows; `None` under other colours.
-    pub fn surface(&self) -> Option<&str> {
-        self.surface.as_deref().filter(|_| self.applied.attribute == ColourAttribute::Own)
+    /// The exact surface that the picture shows; or why there is none, and the remedy.
+    pub fn surface(&self) -> std::result::Result<&ExactSurface, &str> {
+        match self.applied.attribute {
+            ColourAttribute::Own => self.surface.as_ref().map_err(String::as_str),
+            _ => Err("The exact surface has the points' own colours: choose these."),
+        }
     }
 
     /// Whether radii cannot be scaled: normalization weights are those of the discs as they are.
@@ -345,7 +349,7 @@ mod tests {
         let read = Arc::new(move |_: &str, _: &dyn Progress| Ok(read.clone()));
         let properties = Some(PointProperties { names: vec![name.into()], read });
         Source::new(Loaded {
-            surface: Some("scene:none".into()),
+            surface: Ok(ExactSurface::new(Arc::new(|_| Err(Error::Cancelled)))),
             properties,
             ..Loaded::new(model, Method::ALL[0])
         })
@@ -370,7 +374,7 @@ mod tests {
             Some(Colours::Srgb8(parts.map(code).map(|[r, g, b]| [r, g, b, 0]).to_vec()))
         };
         assert_eq!(source.visible_model().surfels.colours, codes([Some(0.0), Some(0.5), Some(1.0)]));
-        assert_eq!(source.surface(), None, "its colours are not the surface's");
+        assert!(source.surface().err().unwrap().contains("own colours"), "its colours are not the surface's");
         source.colour_by(ColourAttribute::Property(0));
         wait(&mut source).unwrap();
         source.applied = source.wanted;
@@ -379,7 +383,7 @@ mod tests {
         source.colour_by(ColourAttribute::Own);
         source.applied = source.wanted;
         assert_eq!(source.visible_model().surfels.colours, None);
-        assert_eq!(source.surface(), Some("scene:none"));
+        assert!(source.surface().is_ok());
     }
 
     #[test]

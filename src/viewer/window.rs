@@ -137,6 +137,9 @@ impl WindowRenderer {
             .unwrap_or(0.0);
         let size = state.viewport.size;
         let lay_out_again = self.hud.lay_out(&self.window, state, ui_state);
+        if let Some(event) = ui_state.take_event() {
+            events.emit(&event);
+        }
         if state.viewport.size != size && self.adaptive.has_measured() {
             // An edge is dragged: a frame of full quality follows when it rests.
             self.adaptive.moved(start);

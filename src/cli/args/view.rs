@@ -50,6 +50,9 @@ pub struct View {
     /// Starts with the method's default settings instead of the saved ones, and saves none
     #[arg(long)]
     pub fresh: bool,
+    /// File with the triangles that the points of INPUT were sampled from: the exact surface of the panel's error [default: the triangles of INPUT]
+    #[arg(long, value_name = "MESH", requires = "inputs")]
+    pub truth: Option<PathBuf>,
     /// The Vulkan device
     #[command(flatten)]
     pub device: DeviceArgs,

@@ -34,3 +34,13 @@ impl<S: Surface + ?Sized> Traceable for S {
         Surface::bounds(self)
     }
 }
+
+impl Traceable for Box<dyn Surface> {
+    fn trace(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
+        Traceable::trace(&**self, origin, direction)
+    }
+
+    fn bounds(&self) -> Bounds {
+        Traceable::bounds(&**self)
+    }
+}

@@ -3,42 +3,19 @@
 use super::raster::{Raster, RasterWindow, Values};
 use super::widgets::{choice, combo};
 use crate::viewer::choices::Choices;
+use crate::viewer::comparison::{Against, Comparison, Task, Truth};
+use crate::viewer::events::{ComparisonInfo, Event};
 use crate::viewer::job::Job;
-use egui::{Button, Grid, ProgressBar, Slider, SliderClamping, Ui};
+use egui::{Button, Grid, ProgressBar, RichText, Slider, SliderClamping, Ui};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
-use surfel::geometry::{Camera, ColourMap, Model};
-use surfel::verify::metrics;
-use surfel::verify::reference::{self, Tolerance};
-use surfel::verify::scenes;
-use surfel::verify::truth;
+use std::time::Duration;
+use surfel::geometry::ColourMap;
+use surfel::verify::reference::Tolerance;
 use surfel::vk::Device;
-use surfel::{Error, Picture, Progress, RenderOptions, Renderer, Result, Scene, Settings};
+use surfel::{Error, RenderOptions};
 
 /// How often the progress of a comparison is shown.
 const POLL_PERIOD: Duration = Duration::from_millis(200);
-
-/// What the picture is compared with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Against {
-    Reference,
-    Truth,
-}
-
-impl Against {
-    const fn name_and_help(self) -> [&'static str; 2] {
-        match self {
-            Self::Reference => [
-                "float64 reference",
-                "The same method, camera and settings in float64 on the CPU: shows the error of rounding and of the GPU.",
-            ],
-            Self::Truth => [
-                "exact surface",
-                "Rays against the surface itself: shows the error of points, method and filter, edges included.",
-            ],
-        }
-    }
-}
 
 /// The panel, and the result of the last comparison.
 pub struct Errors {
@@ -46,42 +23,26 @@ pub struct Errors {
     job: Option<Job<Comparison>>,
     found: Option<Comparison>,
     error: Option<String>,
+    /// Whether the last result or error is not in the event log yet.
+    is_new: bool,
     /// The largest difference of a channel that counts as equal, linear.
     tolerance: f32,
     pub(super) window: RasterWindow,
-}
-
-/// A comparison to run.
-struct Task {
-    against: Against,
-    device: Arc<Device>,
-    scene: Arc<Scene>,
-    model: Arc<Model>,
-    surface: Option<String>,
-    camera: Camera,
-    settings: Settings,
-    size: [u32; 2],
-    options: RenderOptions,
-}
-
-/// Result of a comparison.
-struct Comparison {
-    against: Against,
-    camera: Camera,
-    settings: Settings,
-    size: [u32; 2],
-    rmse: f64,
-    /// The largest difference of a channel of each pixel.
-    errors: Vec<f32>,
-    worst: (f32, [u32; 2]),
-    took: Duration,
 }
 
 impl Default for Errors {
     fn default() -> Self {
         let tolerance = Tolerance::default().colour as f32;
         let window = RasterWindow::default();
-        Self { against: Against::Reference, job: None, found: None, error: None, tolerance, window }
+        Self {
+            against: Against::Reference,
+            job: None,
+            found: None,
+            error: None,
+            is_new: false,
+            tolerance,
+            window,
+        }
     }
 }
 
@@ -112,6 +73,7 @@ impl Errors {
             None => ui.ctx().request_repaint_after(POLL_PERIOD),
             Some(outcome) => {
                 self.job = None;
+                self.is_new = !matches!(outcome, Err(Error::Cancelled));
                 match outcome {
                     Ok(found) => {
                         let values = Values::Numbers(found.errors.clone());
@@ -128,31 +90,35 @@ impl Errors {
     }
 
     fn show_choices(&mut self, ui: &mut Ui, choices: &Choices<'_>, device: &Arc<Device>) {
-        let exact = choices.source.surface().is_some();
-        if !exact {
+        let unknown = choices.source.surface().err();
+        if unknown.is_some() {
             self.against = Against::Reference;
         }
         let [name, text] = self.against.name_and_help();
         combo(ui, "against", name, text, |ui| {
-            for against in [Against::Reference, Against::Truth] {
+            for against in [Against::Reference, Against::Surface] {
                 let [name, text] = against.name_and_help();
-                let reason = "Only built-in scenes in their own colours have an exact surface.";
-                let reason = (!exact && against == Against::Truth).then_some(reason);
+                let reason = unknown.filter(|_| against == Against::Surface);
                 if choice(ui, self.against == against, name, text, reason) {
                     self.against = against;
                 }
             }
         });
+        if let Some(reason) = unknown {
+            ui.label(RichText::new(reason).small());
+        }
         let Some(Ok(camera)) = &choices.camera else { return };
         let button = ui.add(Button::new("Compare this picture"));
         if button.on_hover_text("Renders the picture again at full quality, and the reference or exact picture; takes seconds to minutes.").clicked() {
             self.error = None;
+            let truth = match choices.source.surface() {
+                Ok(surface) if self.against == Against::Surface => Truth::Surface(surface.clone()),
+                _ => Truth::Reference(choices.source.visible_model()),
+            };
             let task = Task {
-                against: self.against,
+                truth,
                 device: device.clone(),
                 scene: choices.scene.clone(),
-                model: choices.source.visible_model(),
-                surface: choices.source.surface().map(Into::into),
                 camera: *camera,
                 settings: choices.settings.clone(),
                 size: choices.size,
@@ -181,7 +147,8 @@ impl Errors {
                 ("beyond", format!("{:.4} %, {beyond} px", 100.0 * beyond as f64 / found.errors.len().max(1) as f64), "Pixels with a channel whose difference is above the tolerance."),
                 ("took", format!("{:.1} s", found.took.as_secs_f64()), "Time to render the reference or exact picture."),
             ];
-            for (name, value, text) in rows {
+            let noise = found.standard_error.map(|error| ("noise", format!("{error:.1e}"), "Standard error of the exact picture, root mean square: its rays are samples."));
+            for (name, value, text) in rows.into_iter().chain(noise) {
                 ui.label(name).on_hover_text(text);
                 ui.monospace(value);
                 ui.end_row();
@@ -196,67 +163,23 @@ impl Errors {
         .on_hover_text("The largest difference of a channel that counts as equal, in linear light.");
         ui.checkbox(&mut self.window.open, "show as a picture");
     }
-}
 
-impl Task {
-    /// Runs the comparison.
-    fn run(self, progress: &dyn Progress) -> Result<Comparison> {
-        let Self { against, device, scene, model, surface, camera, settings, size, options } = self;
-        let (picture, _) = Renderer::new(&device, options)?.render_picture(&scene, &camera, &settings)?;
-        let start = Instant::now();
-        let truth = match (against, surface) {
-            (Against::Truth, Some(surface)) => {
-                let surface = scenes::surface(&surface)?;
-                truth::render(&*surface, &camera, &settings, size, &truth::Options::default(), progress)?
-                    .picture
-            }
-            _ => reference::render(&*model, &camera, size, &settings, progress)?.to_picture(),
-        };
-        if progress.is_cancelled() {
-            return Err(Error::Cancelled);
+    /// The event of the last comparison, if the log does not have it yet.
+    pub fn take_event(&mut self) -> Option<Event<'_>> {
+        if !std::mem::take(&mut self.is_new) {
+            return None;
         }
-        let took = start.elapsed();
-        let over = settings.background.unwrap_or_default();
-        let [picture, truth] = [picture, truth].map(|picture| composite(&picture, over));
-        let rmse = metrics::rmse::rmse(&picture, &truth);
-        let errors = differences(&picture, &truth);
-        let worst = errors.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
-        let worst =
-            worst.map_or((0.0, [0, 0]), |(i, error)| (*error, [i as u32 % size[0], i as u32 / size[0]]));
-        Ok(Comparison { against, camera, settings, size, rmse, errors, worst, took })
-    }
-}
-
-/// Composites colours over a background, as the window shows them.
-fn composite(picture: &Picture, over: [f32; 3]) -> Vec<[f64; 3]> {
-    let pixel = |[r, g, b, a]: &[f32; 4]| {
-        let channel =
-            |i: usize, c: f32| f64::from(c) * f64::from(*a) + f64::from(over[i]) * (1.0 - f64::from(*a));
-        [channel(0, *r), channel(1, *g), channel(2, *b)]
-    };
-    picture.colour.iter().map(pixel).collect()
-}
-
-/// The largest difference of a channel of each pixel.
-fn differences(a: &[[f64; 3]], b: &[[f64; 3]]) -> Vec<f32> {
-    let largest =
-        |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f64::max) as f32;
-    a.iter().zip(b).map(largest).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn pictures_are_composited_and_the_largest_difference_counts() {
-        let picture = Picture {
-            size: [2, 1],
-            colour: vec![[1.0, 0.5, 0.0, 1.0], [1.0, 1.0, 1.0, 0.25]],
-            ..Default::default()
-        };
-        let over = composite(&picture, [0.0, 1.0, 0.5]);
-        assert_eq!(over, [[1.0, 0.5, 0.0], [0.25, 1.0, 0.625]]);
-        assert_eq!(differences(&over, &[[1.0, 0.0, 0.25], [0.25, 1.0, 0.625]]), [0.5, 0.0]);
+        if let Some(error) = &self.error {
+            return Some(Event::Error { error });
+        }
+        self.found.as_ref().map(|found| {
+            Event::Compared(ComparisonInfo {
+                against: found.against.name_and_help()[0],
+                picture: found.size,
+                rmse: found.rmse,
+                worst: found.worst.0,
+                took_ms: 1e3 * found.took.as_secs_f64(),
+            })
+        })
     }
 }

@@ -4,6 +4,7 @@ use super::buffers::Buffers;
 use super::error::Errors;
 use super::split::Split;
 use super::times::Times;
+use crate::viewer::events::Event;
 use crate::viewer::layout::Layout;
 use crate::viewer::scene_view::level_settings;
 use crate::viewer::split_view::FrameOptions;
@@ -53,6 +54,11 @@ impl UiState {
     /// Closes the window on top of the picture; returns whether there was one.
     pub fn close_top_window(&mut self) -> bool {
         std::mem::take(&mut self.show_help) || self.errors.window.close() || self.buffers.window.close()
+    }
+
+    /// The event of a comparison that has ended, once.
+    pub fn take_event(&mut self) -> Option<Event<'_>> {
+        self.errors.take_event()
     }
 
     /// Drops the textures of an egui context before the context itself is dropped.

@@ -33,7 +33,7 @@ impl Mesh {
         Ok(Self {
             corners,
             normals: pick(&self.normals),
-            colours: self.colours.as_deref().map(pick),
+            albedo: self.albedo.of_corners(kept),
             triangles,
             hierarchy: Hierarchy::new(&boxes),
             bounds,

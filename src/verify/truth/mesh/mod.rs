@@ -1,25 +1,26 @@
 //! Triangle meshes as exact surfaces.
 
+mod albedo;
 mod coarse;
 mod normals;
 pub(super) mod triangle;
 
 use super::traceable::{Hit, Traceable};
 use crate::error::{Error, Result};
-use crate::geometry::{Bounds, Cloud, Colours};
+use crate::geometry::{Bounds, Cloud};
 use crate::verify::hierarchy::{Hierarchy, union};
-use crate::verify::reference::linear;
+use albedo::Albedo;
 use glam::DVec3;
 use rayon::prelude::*;
 use xxhash_rust::xxh3::Xxh3;
 
-/// A triangle mesh, visible from both sides. Normals and colours are interpolated between the corners. A point without
-/// a normal gets the mean of its triangles' normals, weighted by their angles.
+/// A triangle mesh, visible from both sides. Normals, colours and texture coordinates are interpolated between the
+/// corners. A point without a normal gets the mean of its triangles' normals, weighted by their angles. Materials and
+/// lines of the cloud are left out.
 pub struct Mesh {
     corners: Vec<DVec3>,
     normals: Vec<DVec3>,
-    /// Linear; `None` if the points have no colours.
-    colours: Option<Vec<DVec3>>,
+    albedo: Albedo,
     triangles: Vec<[u32; 3]>,
     hierarchy: Hierarchy,
     bounds: Bounds,
@@ -42,9 +43,9 @@ impl Mesh {
             return Err(Error::input(name, "no triangles: give a mesh, or a built-in scene"));
         };
         let normals = normals::fill(cloud, &corners);
-        let colours = cloud.colours.as_ref().map(decoded);
+        let albedo = Albedo::of(cloud);
         let hierarchy = Hierarchy::new(&boxes);
-        Ok(Self { corners, normals, colours, triangles, hierarchy, bounds })
+        Ok(Self { corners, normals, albedo, triangles, hierarchy, bounds })
     }
 
     /// Number of triangles.
@@ -65,24 +66,13 @@ impl Mesh {
     /// A text that identifies the mesh.
     pub fn digest(&self) -> String {
         let mut hash = Xxh3::new();
-        let vectors = |hash: &mut Xxh3, all: &[DVec3]| {
-            hash.update(&all.len().to_le_bytes());
-            all.iter().flat_map(DVec3::to_array).for_each(|value| {
-                hash.update(&value.to_le_bytes());
-            });
-        };
-        vectors(&mut hash, &self.corners);
-        vectors(&mut hash, &self.normals);
-        vectors(&mut hash, self.colours.as_deref().unwrap_or_default());
+        hash_vectors(&mut hash, &self.corners);
+        hash_vectors(&mut hash, &self.normals);
+        self.albedo.hash(&mut hash);
         self.triangles.iter().flatten().for_each(|corner| {
             hash.update(&corner.to_le_bytes());
         });
         format!("mesh:{:032x}", hash.digest128())
-    }
-
-    fn mean(&self, of: &[DVec3], triangle: usize, weights: DVec3) -> DVec3 {
-        let [a, b, c] = self.triangles[triangle].map(|corner| of[corner as usize]);
-        weights.x * a + weights.y * b + weights.z * c
     }
 
     /// The plane's normal, for points where the corners' normals cancel.
@@ -110,9 +100,10 @@ impl Traceable for Mesh {
             }
         });
         let (t, index, weights) = found?;
-        let normal = self.mean(&self.normals, index, weights).try_normalize();
-        let albedo = self.colours.as_ref().map(|colours| self.mean(colours, index, weights).to_array());
-        Some(Hit { t: t / length, normal: normal.unwrap_or_else(|| self.flat_normal(index)), albedo })
+        let corners = self.triangles[index];
+        let normal = mean(corners.map(|corner| self.normals[corner as usize]), weights).try_normalize();
+        let normal = normal.unwrap_or_else(|| self.flat_normal(index));
+        Some(Hit { t: t / length, normal, albedo: self.albedo.at(corners, weights) })
     }
 
     fn bounds(&self) -> Bounds {
@@ -134,9 +125,13 @@ fn bounds(boxes: &[[DVec3; 2]]) -> Option<Bounds> {
     boxes.iter().copied().reduce(union).map(|[min, max]| Bounds::of_box(min, max))
 }
 
-fn decoded(colours: &Colours) -> Vec<DVec3> {
-    match colours {
-        Colours::Srgb8(codes) => codes.par_iter().map(|code| linear(*code)).collect(),
-        Colours::Linear(colours) => colours.iter().map(|colour| DVec3::from(colour.map(f64::from))).collect(),
-    }
+fn mean([a, b, c]: [DVec3; 3], weights: DVec3) -> DVec3 {
+    weights.x * a + weights.y * b + weights.z * c
+}
+
+fn hash_vectors(hash: &mut Xxh3, all: &[DVec3]) {
+    hash.update(&all.len().to_le_bytes());
+    all.iter().flat_map(DVec3::to_array).for_each(|value| {
+        hash.update(&value.to_le_bytes());
+    });
 }

@@ -1,14 +1,16 @@
 //! Meshes against the surface that they approximate.
 
 use super::centre;
-use crate::geometry::{Camera, Cloud, Colours};
+use crate::geometry::{Camera, Cloud, Colours, MipMap, Texture};
+use crate::picture::Picture;
 use crate::settings::Settings;
 use crate::verify::scenes;
 use crate::verify::scenes::random::Random;
 use crate::verify::truth::mesh::triangle::Ray;
 use crate::verify::truth::{Eye, Mesh, Options, Traceable, render};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 /// A unit sphere of 2n × n quads, without normals.
 fn sphere(n: u32) -> Cloud {
@@ -137,6 +139,29 @@ fn colours_and_normals_are_interpolated() {
     assert!(Mesh::new("mesh", &cloud).err().unwrap().to_string().contains("no triangles"));
 }
 
+/// A texture of two columns, red and blue, over the unit square.
+fn textured() -> Cloud {
+    let colour = [[1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]].to_vec();
+    let image = MipMap::new(&Picture { size: [2, 1], colour, ..Default::default() }).unwrap();
+    let coordinates = vec![Vec2::ZERO, Vec2::X, Vec2::Y];
+    Cloud {
+        positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+        triangles: vec![[0, 1, 2]],
+        texture: Some(Texture { image: Arc::new(image), coordinates }),
+        ..Default::default()
+    }
+}
+
+#[test]
+fn textures_are_sampled_between_the_corners() {
+    let mesh = Mesh::new("mesh", &textured()).unwrap();
+    // Centres of both texels, and the middle between them.
+    for (x, colour) in [(0.25, [1.0, 0.0, 0.0]), (0.75, [0.0, 0.0, 1.0]), (0.5, [0.5, 0.0, 0.5])] {
+        let hit = mesh.trace(DVec3::new(x, 0.1, 4.0), DVec3::NEG_Z).unwrap();
+        assert!(DVec3::from(hit.albedo.unwrap()).abs_diff_eq(DVec3::from(colour), 1e-6), "{x}: {hit:?}");
+    }
+}
+
 /// Two triangles meet at a corner of the cube's horizontal face, and one at that of each vertical face.
 #[test]
 fn normals_weigh_triangles_by_their_angles() {
@@ -172,7 +197,9 @@ fn digests_tell_meshes_apart() {
         Cloud { normals: Some(vec![Vec3::Z, Vec3::Z, Vec3::X]), ..usual.clone() },
         Cloud { triangles: vec![[0, 2, 1]], normals: Some(vec![Vec3::Z; 3]), ..usual.clone() },
         Cloud { colours: Some(Colours::Linear(vec![[0.5, 0.5, 0.6]; 3])), ..usual.clone() },
-        Cloud { colours: None, ..usual },
+        Cloud { colours: None, ..usual.clone() },
+        textured(),
+        Cloud { colours: None, normals: None, ..usual },
     ];
     let mut digests = all.each_ref().map(digest).to_vec();
     digests.sort();
