@@ -26,7 +26,8 @@ pub fn of(plan: &Plan, picture: &Picture, truth: &Picture) -> Result<Images> {
     })
 }
 
-fn png(image: Encoded) -> Result<String> {
+/// A PNG in base64, for the page.
+pub(super) fn png(image: Encoded) -> Result<String> {
     let mut bytes = Vec::new();
     image.png(&mut bytes).map_err(Error::io("a picture of the report".as_ref(), "cannot encode"))?;
     Ok(BASE64_STANDARD.encode(bytes))

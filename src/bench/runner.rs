@@ -15,6 +15,7 @@ use crate::picture::Picture;
 use crate::settings::splatting::Normalization;
 use crate::settings::{Choice, RasterizerChoice, Settings, Shading};
 use crate::verify::metrics::flicker::Flicker;
+use crate::verify::metrics::path::PathValues;
 use crate::verify::metrics::{self, Pair, colour};
 use crate::verify::reference::{self, Expected, Tolerance};
 use crate::verify::scenes::Viewpoint;
@@ -29,7 +30,7 @@ use std::sync::Arc;
 const PATH: u32 = 6;
 
 /// Shift of the picture from one of these frames to the next, px: below one half, and no simple fraction.
-const STEP: f64 = 0.37;
+pub const STEP: f64 = 0.37;
 
 /// Options of a runner.
 #[derive(Clone, Debug, Default)]
@@ -244,9 +245,10 @@ impl Runner {
             }
         }
         if measurements.flicker {
-            let flicker = self.flicker(&job, &mut *engine)?;
+            let (flicker, path) = self.flicker(&job, &mut *engine)?;
             run.error.iter_mut().for_each(|error| {
                 error.metrics.insert("flicker".into(), flicker);
+                error.path = Some(path.clone());
             });
         }
         run.memory = engine.memory();
@@ -329,6 +331,7 @@ impl Runner {
             truth_rms: truth.error.rms,
             metrics: finite.map(|(name, value)| (name.into(), value)).collect(),
             terms: error_terms::split(&pair),
+            path: None,
         })
     }
 
@@ -361,7 +364,8 @@ impl Runner {
         Ok(())
     }
 
-    fn flicker(&mut self, job: &Job<'_>, engine: &mut dyn LoadedEngine) -> Result<f64> {
+    /// The flicker along a slow camera path, and the values of its frames.
+    fn flicker(&mut self, job: &Job<'_>, engine: &mut dyn LoadedEngine) -> Result<(f64, PathValues)> {
         let (subject, size) = (&job.subject, job.plan.size);
         let mut flicker = Flicker::new(colour::BLACK);
         for frame in 0..PATH {
@@ -370,7 +374,7 @@ impl Runner {
             let (picture, truth) = (engine.picture(&camera, &job.plan.settings)?, self.truth(job, &camera)?);
             flicker.add(&Pair::new(&picture, &truth.picture)?)?;
         }
-        flicker.value()
+        Ok((flicker.value()?, flicker.path().clone()))
     }
 
     /// The exact picture, or the supersampled reference if the surface is unknown. Each is rendered once.

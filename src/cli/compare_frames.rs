@@ -1,5 +1,8 @@
 //! `surfel compare --frames`: metrics, flicker and popping of numbered frames.
 
+#[cfg(feature = "bench")]
+mod page;
+
 use super::args::Compare;
 use super::compare::name_file;
 use super::files;
@@ -12,6 +15,7 @@ use std::path::Path;
 use surfel::formats::image::read;
 use surfel::settings::Choice;
 use surfel::verify::metrics::flicker::Flicker;
+use surfel::verify::metrics::path::PathValues;
 use surfel::verify::metrics::{Better, Metric, Options, Pair, measure};
 use surfel::{Error, Picture, Result};
 
@@ -25,8 +29,8 @@ struct Measured {
     /// Metrics of each frame.
     frames: Vec<Vec<(Metric, f64)>>,
     flicker: f64,
-    /// Flicker around each frame but the first and the last.
-    around: Vec<f64>,
+    /// Values of each frame, in linear light.
+    path: PathValues,
 }
 
 /// Compares two sequences of frames; returns a line for each limit that is violated.
@@ -34,13 +38,18 @@ pub fn run(args: &Compare, options: &Options) -> Result<Vec<String>> {
     if let Some(json) = &args.json {
         files::check(json)?;
     }
-    let measured = measure_all([&Pattern::parse(&args.picture)?, &Pattern::parse(&args.truth)?], options)?;
+    #[cfg(feature = "bench")]
+    page::check(args)?;
+    let patterns = [Pattern::parse(&args.picture)?, Pattern::parse(&args.truth)?];
+    let measured = measure_all(&patterns, options)?;
     let limits = args.fail_above.iter().chain(&args.fail_below);
     let violation = |limit: &Limit| limit.violation_by(measured.value(limit.metric)).transpose();
     let violations: Vec<_> = limits.filter_map(violation).collect::<Result<_>>()?;
     if let Some(output) = &args.json {
         files::write_text(output, &report(args, &measured, &violations)?)?;
     }
+    #[cfg(feature = "bench")]
+    page::write(args, &patterns, &measured)?;
     if !args.quiet && args.json.as_ref().is_none_or(|output| output != "-") {
         files::print(&measured.table())?;
     }
@@ -48,11 +57,11 @@ pub fn run(args: &Compare, options: &Options) -> Result<Vec<String>> {
 }
 
 /// Measures the frames from the first that exists to the last of consecutive numbers.
-fn measure_all(patterns: [&Pattern; 2], options: &Options) -> Result<Measured> {
-    let exist = |number| patterns.map(|pattern| Path::new(&pattern.file(number)).exists());
+fn measure_all(patterns: &[Pattern; 2], options: &Options) -> Result<Measured> {
+    let exist = |number| patterns.each_ref().map(|pattern| Path::new(&pattern.file(number)).exists());
     let first = (0..MOST_BEFORE).find(|number| exist(*number) != [false; 2]);
     let first = first.ok_or_else(|| {
-        let names = patterns.map(|pattern| Path::new(&pattern.file(0)).display().to_string());
+        let names = patterns.each_ref().map(|pattern| Path::new(&pattern.file(0)).display().to_string());
         Error::Usage(format!(
             "there are no frames {} and {}, nor of numbers up to {MOST_BEFORE}: check the names and the folders",
             names[0], names[1]
@@ -60,7 +69,7 @@ fn measure_all(patterns: [&Pattern; 2], options: &Options) -> Result<Measured> {
     })?;
     let (mut flicker, mut frames) = (Flicker::new(options.background), Vec::new());
     for number in (first..).take_while(|number| exist(*number) != [false; 2]) {
-        let [name, other] = patterns.map(|pattern| pattern.file(number));
+        let [name, other] = patterns.each_ref().map(|pattern| pattern.file(number));
         let [picture, truth]: [Picture; 2] = [read(Path::new(&name))?, read(Path::new(&other))?];
         let named = |error| match name_file(error, [&name, &other]) {
             Error::Usage(text) => Error::Usage(format!("{}: {text}", Path::new(&name).display())),
@@ -70,14 +79,14 @@ fn measure_all(patterns: [&Pattern; 2], options: &Options) -> Result<Measured> {
         flicker.add(&pair)?;
         frames.push(measure(&pair, options)?.values);
     }
-    Ok(Measured { first, frames, flicker: flicker.value()?, around: flicker.values().collect() })
+    Ok(Measured { first, frames, flicker: flicker.value()?, path: flicker.path().clone() })
 }
 
 impl Measured {
     /// Number of the frame that pops most, and the flicker around it.
     fn popping(&self) -> (u32, f64) {
-        let around = (self.first + 1..).zip(self.around.iter().copied());
-        around.min_by(|a, b| b.1.total_cmp(&a.1)).unwrap_or((self.first, 0.0))
+        let (index, flicker) = self.path.popping().unwrap_or_default();
+        (self.first + index as u32, flicker)
     }
 
     /// The metrics that all frames have: mean, and worst value with its frame.
@@ -156,12 +165,16 @@ fn report(args: &Compare, measured: &Measured, violations: &[String]) -> Result<
             (metric.name().into(), json!({ "mean": mean, "worst": worst, "worst_frame": frame }))
         })
         .collect();
-    let frames = measured.frames.iter().zip(measured.first..).map(|(values, number)| {
+    let frames = measured.frames.iter().enumerate().map(|(index, values)| {
         let mut frame: Map<String, Value> =
             values.iter().map(|(metric, value)| (metric.name().into(), json!(value))).collect();
-        let inner = (number - measured.first).checked_sub(1);
-        frame.insert("frame".into(), json!(number));
-        frame.insert("flicker".into(), json!(inner.and_then(|inner| measured.around.get(inner as usize))));
+        // There is nothing before the first frame.
+        let later = |values: &[f64]| json!(index.checked_sub(1).and_then(|index| values.get(index)));
+        let PathValues { picture_change, truth_change, flicker, .. } = &measured.path;
+        frame.insert("frame".into(), json!(measured.first + index as u32));
+        frame.insert("picture_change".into(), later(picture_change));
+        frame.insert("truth_change".into(), later(truth_change));
+        frame.insert("flicker".into(), later(flicker));
         Value::Object(frame)
     });
     let (frame, popping) = measured.popping();

@@ -162,16 +162,7 @@ fn the_report_may_go_to_standard_output() {
 #[test]
 fn frames_have_flicker_and_the_worst_pop() {
     let program = Program::new();
-    // The truth brightens evenly. The picture follows, and is too bright in frame 5.
-    for number in 2..9u8 {
-        disc(&program, &format!("b{number:02}.png"), 12.0, 100 + 5 * number);
-        disc(
-            &program,
-            &format!("a{number:02}.png"),
-            12.0,
-            100 + 5 * number + if number == 5 { 90 } else { 0 },
-        );
-    }
+    popping_frames(&program);
     let run = program.run("compare --frames a%02d.png b%02d.png --json out.json --fail-above popping=10");
     assert!(run.text().contains("frames 2 to 8\n"), "{}", run.text());
     assert!(value(run.text(), "rmse").parse::<f64>().unwrap() > 0.0);
@@ -205,6 +196,100 @@ fn frames_have_flicker_and_the_worst_pop() {
     std::fs::remove_file(program.path("b08.png")).unwrap();
     let run = program.run("compare --frames a%02d.png b%02d.png");
     assert!(run.code != 0 && run.err.contains("b08.png"), "{}", run.err);
+}
+
+/// Names in the first column of the table of the guide under a header, of the rows that `fits` accepts.
+fn documented(header: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
+    let guide = include_str!("../../src/guide/bench.md");
+    let (_, table) = guide.split_once(header).unwrap();
+    let rows = table.lines().skip(2).take_while(|line| line.starts_with('|'));
+    let mut names: Vec<String> = rows
+        .filter(|row| fits(row))
+        .flat_map(|row| row.split('|').nth(1).unwrap().split('`').skip(1).step_by(2))
+        .map(Into::into)
+        .collect();
+    names.sort();
+    names
+}
+
+fn names(object: &Value) -> Vec<String> {
+    object.as_object().unwrap().keys().cloned().collect()
+}
+
+/// Frames 2 to 8: the truth brightens evenly; the picture follows, and is too bright in frame 5.
+fn popping_frames(program: &Program) {
+    for number in 2..9u8 {
+        let bright = if number == 5 { 90 } else { 0 };
+        disc(program, &format!("b{number:02}.png"), 12.0, 100 + 5 * number);
+        disc(program, &format!("a{number:02}.png"), 12.0, 100 + 5 * number + bright);
+    }
+}
+
+#[test]
+fn json_has_the_documented_names() {
+    let program = Program::new();
+    popping_frames(&program);
+    program.run("compare --frames a%02d.png b%02d.png --json frames.json -q").text();
+    program.run("compare a02.png b02.png --json pair.json -q").text();
+    let header = "| name | with | meaning |";
+    let frames = json(&program, "frames.json");
+    assert_eq!(names(&frames), documented(header, |row| !row.contains("| one pair |")));
+    let pair = json(&program, "pair.json");
+    assert_eq!(names(&pair), documented(header, |row| !row.contains("| `--frames` |")));
+    // Every frame has the metrics, which have the names of the pair's.
+    let mut expected = documented("| name in `frames` | meaning |", |_| true);
+    expected.extend(names(&pair["metrics"]));
+    expected.sort();
+    for frame in frames["frames"].as_array().unwrap() {
+        assert_eq!(names(frame), expected);
+    }
+    assert_eq!(names(&frames["metrics"]["rmse"]), ["mean", "worst", "worst_frame"]);
+    assert_eq!(names(&frames["popping"]), ["frame", "value"]);
+    let of = |number: usize, name: &str| frames["frames"][number - 2][name].clone();
+    assert!(
+        of(2, "picture_change").is_null() && of(2, "truth_change").is_null() && of(8, "flicker").is_null()
+    );
+    // A jumps to frame 5 and back; B changes evenly, apart from the transfer function.
+    let number = |value: Value| value.as_f64().unwrap();
+    assert!(number(of(5, "picture_change")) > 5.0 * number(of(5, "truth_change")));
+    assert_eq!(of(4, "picture_change"), of(4, "truth_change"));
+}
+
+#[test]
+fn the_report_shows_the_path_and_the_frames_that_pop() {
+    let program = Program::new();
+    popping_frames(&program);
+    let run = program.run("compare --frames a%02d.png b%02d.png --report path.html");
+    assert!(run.text().contains("frames 2 to 8\n"), "{}", run.text());
+    let page = std::fs::read_to_string(program.path("path.html")).unwrap();
+    for part in
+        ["around frame 5", "in frame 5", "Frames 2 to 8", "frames 4, 5 and 6", "A is <code>a%02d.png</code>"]
+    {
+        assert!(page.contains(part), "{part}: {page}");
+    }
+    // Three plots, and three frames of A, of B and of their difference; only frame 5 differs.
+    assert_eq!((page.matches("<svg").count(), page.matches("<img").count()), (3, 9));
+    let image = |name: &str| {
+        let (before, _) = page.split_once(&format!("\" alt=\"{name}\"")).unwrap();
+        before.rsplit_once("base64,").unwrap().1.to_owned()
+    };
+    assert_eq!(image("A, frame 4"), image("B, frame 4"));
+    assert_ne!(image("A, frame 5"), image("B, frame 5"));
+    assert_eq!(image("difference, frame 4"), image("difference, frame 6"));
+    assert_ne!(image("difference, frame 4"), image("difference, frame 5"));
+    assert!(
+        !page.contains("http://")
+            || page.matches("http://").count() == page.matches("http://www.w3.org").count()
+    );
+    for (options, code, cause) in [
+        ("--report path.txt", 2, "name the file .html"),
+        ("--report no/such/path.html", 1, "create it"),
+        ("--report j.html --json j.html", 2, "--report would overwrite j.html"),
+    ] {
+        let run = program.run(&format!("compare --frames a%02d.png b%02d.png {options}"));
+        assert!(run.error(code).contains(cause), "{options}: {}", run.err);
+    }
+    assert!(program.run("compare a02.png b02.png --report path.html").error(2).contains("--frames"));
 }
 
 #[test]

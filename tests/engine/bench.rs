@@ -150,6 +150,8 @@ fn without_the_low_pass_the_horizon_aliases_and_the_error_grows() {
         plan.measurements.flicker = true;
         let error = runner.run(&plan).unwrap().error.unwrap();
         println!("H {lowpass}: inside {}, {:?}", error.terms.inside, error.metrics);
+        let path = error.path.unwrap();
+        assert_eq!([path.rmse.len(), path.truth_change.len(), path.flicker.len()], [6, 5, 4]);
         (error.terms.inside, error.metrics["flicker"])
     };
     let ((off, flickers), (on, steady)) = (with(0.0), with(1.0));

@@ -111,6 +111,27 @@ fn the_page_is_complete_and_loads_nothing() {
 }
 
 #[test]
+fn the_page_has_the_errors_along_the_camera_path_by_the_options() {
+    let mut results = plausible();
+    let page = page(&results, CODE);
+    let (_, section) = page.split_once("<section id=\"aliasing\">").unwrap();
+    let section = section.split_once("</section>").unwrap().0;
+    assert_eq!(section.matches("<svg").count(), 2);
+    for part in ["--lowpass 0<", "flicker, linear light", "frame 3", "turns the picture by 0.37 px"] {
+        assert!(section.contains(part), "{part}: {section}");
+    }
+    // Without the values there is the table alone.
+    for run in &mut results.sessions[0].runs {
+        run.error.iter_mut().for_each(|error| error.path = None);
+    }
+    let page = self::page(&results, CODE);
+    let (_, section) = page.split_once("<section id=\"aliasing\">").unwrap();
+    let section = section.split_once("</section>").unwrap().0;
+    assert!(!section.contains("<svg") && section.contains("<table>") && !section.contains("camera path"));
+    check(&results);
+}
+
+#[test]
 fn the_page_has_the_cost_of_points_and_when_they_are_faster() {
     let report = |runs: Vec<Run>| {
         let mut results = plausible();
@@ -325,6 +346,7 @@ fn results_without_later_fields_are_read() {
         for name in ["paper_item", "ratio", "blended"] {
             run.remove(name).unwrap();
         }
+        run["error"].as_object_mut().map(|error| error.remove("path").unwrap());
         run["settings"].as_object_mut().unwrap().remove("axes").unwrap();
     }
     let read: Results = serde_json::from_value(json).unwrap();

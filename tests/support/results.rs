@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use surfel::bench::Results;
 use surfel::bench::record::*;
 use surfel::frame::times::Statistics;
+use surfel::verify::metrics::path::PathValues;
 
 /// Source digest of the results.
 pub const CODE: &str = "c0de";
@@ -104,6 +105,7 @@ pub fn run(experiment: Experiment, scene: &str, points: u64, ms: f64, rmse: f64)
                 hidden: Some(8e-4),
                 precision: Some(3e-7),
             },
+            path: None,
         }),
         float64_error: Some(Float64Error {
             object_pixels: 90_000,
@@ -199,7 +201,14 @@ fn aliasing() -> Vec<Run> {
         .map(|(lowpass, rmse)| {
             let mut run = run(Experiment::Aliasing, "scene:plane?radius=1000", 1_000_000, 250.0, rmse);
             run.settings.lowpass = lowpass;
-            run.error.as_mut().unwrap().metrics.insert("flicker".into(), 0.4 * rmse);
+            let error = run.error.as_mut().unwrap();
+            error.metrics.insert("flicker".into(), 0.4 * rmse);
+            error.path = Some(PathValues {
+                rmse: [1.0, 1.1, 0.9, 1.3, 1.0, 0.95].map(|part| part * rmse).to_vec(),
+                picture_change: [0.5, 0.6, 0.9, 0.8, 0.5].map(|part| part * rmse).to_vec(),
+                truth_change: [0.012; 5].to_vec(),
+                flicker: [0.3, 0.35, 0.6, 0.3].map(|part| part * rmse).to_vec(),
+            });
             run
         })
         .to_vec()

@@ -4,6 +4,7 @@ use crate::frame::times::Statistics;
 use crate::settings::methods::Method;
 use crate::settings::splatting::Splatting;
 use crate::settings::{Alpha, Choice, Settings};
+use crate::verify::metrics::path::PathValues;
 use crate::verify::reference::Comparison;
 use serde::{Deserialize, Deserializer, Serialize};
 use std::collections::BTreeMap;
@@ -273,6 +274,9 @@ pub struct Error {
     pub metrics: BTreeMap<String, f64>,
     /// Parts of the RMSE.
     pub terms: Terms,
+    /// Values of each frame of the camera path; none without flicker.
+    #[serde(default)]
+    pub path: Option<PathValues>,
 }
 
 /// Parts of an RMSE, in its unit: linear light, white is 1.

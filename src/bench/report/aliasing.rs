@@ -1,27 +1,77 @@
 //! Aliasing: texture finer than pixels, with the low-pass filter off and on.
 
 use super::page::{Page, titled};
+use super::path::{self, FLICKER, RMSE, followed, largest, line, ring};
+use super::plot::{Line, Plot, Style};
 use crate::bench::format;
-use crate::bench::group::grouped;
+use crate::bench::group::{distinct, grouped};
 use crate::bench::record::{Experiment, Run, Session};
+use crate::bench::runner::STEP;
+use crate::verify::metrics::path::PathValues;
 use maud::{Markup, html};
 use std::io;
 
-/// A table per scene, and the effect of the filter on the error.
-pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
+/// A table per scene, the effect of the filter on the error, and the errors along the camera path.
+pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     let runs = session.runs.iter().filter(|run| run.experiment == Experiment::Aliasing);
-    let groups = grouped(runs, |run| (&run.scene, run.size));
+    let mut groups = Vec::new();
+    for ((scene, size), runs) in grouped(runs, |run| (&run.scene, run.size)) {
+        let plots = plots(page, &titled(scene, size), &runs)?;
+        groups.push(html! {
+            h3 { (titled(scene, size)) }
+            (table(&runs))
+            @for sentence in sentences(&runs) { p { (sentence) } }
+            (plots)
+        });
+    }
     Ok((!groups.is_empty()).then(|| html! {
         p {
             "A texture far above the Nyquist frequency of the pixels. Without the low-pass filter each pixel shows single samples; with it, "
             "their weighted mean."
         }
-        @for ((scene, size), runs) in &groups {
-            h3 { (titled(scene, *size)) }
-            (table(runs))
-            @for sentence in sentences(runs) { p { (sentence) } }
-        }
+        @for group in &groups { (group) }
     }))
+}
+
+/// Error and flicker of each run along the camera path.
+fn plots(page: &mut Page<'_>, title: &str, runs: &[&Run]) -> io::Result<Markup> {
+    let followed = followed(runs);
+    if followed.is_empty() {
+        return Ok(Markup::default());
+    }
+    let counts = distinct(runs.iter().map(|run| run.points));
+    let lines = |first: u32, of: fn(&PathValues) -> &[f64]| -> Vec<Line> {
+        let named = followed.iter().enumerate().map(|(nth, (run, values))| {
+            let mut label = format::with_options(&run.implementation, &format::options_among(run, runs));
+            if counts.len() > 1 {
+                label += &format!(", {} points", format::count(run.points));
+            }
+            line(label, Style::nth(nth), first, of(values))
+        });
+        named.collect()
+    };
+    let errors = lines(0, |values| &values.rmse);
+    let mut flickers = lines(1, |values| &values.flicker);
+    let popping = |line: &Line| {
+        let heights: Vec<f64> = line.points.iter().map(|[_, y]| *y).collect();
+        ring("", line, largest(&heights)?)
+    };
+    let mut rings: Vec<Line> = flickers.iter().filter_map(popping).collect();
+    rings.iter_mut().take(1).for_each(|ring| ring.label = "popping".into());
+    flickers.extend(rings);
+    let mut figures = Vec::new();
+    for (what, y, lines) in [("error", RMSE, errors), ("flicker", FLICKER, flickers)] {
+        let name = format!("path-{title}-{what}");
+        figures.push(page.plot(Plot::of(name, format!("{title}: {what} by frame"), path::axes(y), lines))?);
+    }
+    Ok(html! {
+        div.plots { @for figure in &figures { (figure) } }
+        p.caption {
+            "A slow camera path: each frame turns the picture by " (STEP) " px from the one before. A line per implementation, by its method and the options "
+            "that differ from the defaults. First: the error of each frame against its truth. Second: the flicker around each frame, which has a frame before "
+            "and after it; rings mark the popping, the largest value of each line."
+        }
+    })
 }
 
 fn table(runs: &[&Run]) -> Markup {

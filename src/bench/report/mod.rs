@@ -12,12 +12,16 @@ mod lowpass;
 mod machines;
 mod page;
 mod papers;
+mod path;
+mod path_page;
 mod plot;
 mod provenance;
 mod pull_push;
 mod scaling;
 mod summary;
 mod views;
+
+pub use path_page::PathReport;
 
 use super::record::Results;
 use crate::error::{Error, Result};

@@ -70,28 +70,17 @@ impl<'a> Page<'a> {
         }
         sections.extend(machines::section(self.results).map(|body| ("machines", "Machines", body)));
         sections.extend(glossary::section(self.results).map(|body| ("glossary", "Glossary", body)));
-        let page = html! {
-            (DOCTYPE)
-            html lang="en" {
-                head {
-                    meta charset="utf-8";
-                    meta name="viewport" content="width=device-width, initial-scale=1";
-                    title { "surfel: speed against error" }
-                    style { (PreEscaped(include_str!("style.css"))) }
+        let body = html! {
+            header { (self.head()) }
+            (self.contents(&sections))
+            main {
+                @for (id, title, body) in &sections {
+                    section id=(id) { h2 { (title) } (body) }
                 }
-                body {
-                    header { (self.head()) }
-                    (self.contents(&sections))
-                    main {
-                        @for (id, title, body) in &sections {
-                            section id=(id) { h2 { (title) } (body) }
-                        }
-                        @if sections.is_empty() { p { "These results contain no runs: measure with `surfel bench`." } }
-                    }
-                }
+                @if sections.is_empty() { p { "These results contain no runs: measure with `surfel bench`." } }
             }
         };
-        Ok(page.into_string())
+        Ok(document("surfel: speed against error", &body))
     }
 
     fn head(&self) -> Markup {
@@ -175,6 +164,23 @@ pub fn commands(run: &Run) -> Markup {
             @for command in commands.into_iter().flatten() { pre { code { (command) } } }
         }
     }
+}
+
+/// A page without external resources.
+pub fn document(title: &str, body: &Markup) -> String {
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (title) }
+                style { (PreEscaped(include_str!("style.css"))) }
+            }
+            body { (body) }
+        }
+    };
+    page.into_string()
 }
 
 /// Letters, digits and hyphens only: safe in file names and ids.

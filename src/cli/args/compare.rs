@@ -4,6 +4,8 @@ use crate::cli::limits::{Limit, above, below};
 use crate::cli::values::{opaque, positive};
 use clap::Args;
 use std::ffi::OsString;
+#[cfg(feature = "bench")]
+use std::path::PathBuf;
 use surfel::verify::metrics::flip::PIXELS_PER_DEGREE;
 
 /// Options of `surfel compare`.
@@ -30,6 +32,10 @@ pub struct Compare {
     /// Writes the metrics as JSON; `-` for standard output, instead of the table
     #[arg(long, value_name = "FILE")]
     pub json: Option<OsString>,
+    /// Writes a page with plots along the camera path and the frames around the largest pop; needs --frames
+    #[cfg(feature = "bench")]
+    #[arg(long, value_name = "FILE.html", requires = "frames")]
+    pub report: Option<PathBuf>,
     /// Background of both pictures: sRGB codes from 0 to 255, or a CSS colour
     #[arg(long, value_name = "R,G,B", default_value = "0,0,0", value_parser = opaque, allow_hyphen_values = true)]
     pub background: [f32; 3],

@@ -10,13 +10,15 @@
 //!
 //! Range: 0 and up, unit of linear colours (1 is white), less is better.
 
+use super::path::PathValues;
+use super::rmse::rmse;
 use super::{Pair, colour};
 use crate::error::{Error, Result};
 
 /// Frames of a second difference.
 const FEWEST: usize = 3;
 
-/// Accumulates the flicker of a path, frame by frame; stores the errors of two frames.
+/// Accumulates the flicker of a path, frame by frame; stores two frames.
 ///
 /// ```
 /// use surfel::Picture;
@@ -39,11 +41,11 @@ const FEWEST: usize = 3;
 pub struct Flicker {
     background: [f32; 3],
     size: [u32; 2],
-    /// Errors of the last two frames, the older one first.
+    /// Errors of the frame before the last one.
+    before: Vec<[f64; 3]>,
+    /// Linear colours of the last frame: of the picture and of the truth.
     last: [Vec<[f64; 3]>; 2],
-    frames: usize,
-    /// Mean squared second difference around each inner frame.
-    squares: Vec<f64>,
+    values: PathValues,
 }
 
 impl Flicker {
@@ -57,23 +59,26 @@ impl Flicker {
     /// # Errors
     /// [`Error::Usage`] if its size differs from the first frame's.
     pub fn add(&mut self, pair: &Pair<'_>) -> Result<()> {
-        if self.frames > 0 && pair.size() != self.size {
+        let frames = self.values.rmse.len();
+        if frames > 0 && pair.size() != self.size {
             let ([a, b], [c, d]) = (pair.size(), self.size);
             return Err(Error::Usage(format!(
-                "frame {} of the path is {a}x{b} px and the first {c}x{d}: render all in one size",
-                self.frames
+                "frame {frames} of the path is {a}x{b} px and the first {c}x{d}: render all in one size"
             )));
         }
-        let error = self.error(pair);
-        let [before, last] = std::mem::take(&mut self.last);
-        if self.frames + 1 >= FEWEST {
-            let frames = before.as_flattened().iter().zip(last.as_flattened()).zip(error.as_flattened());
-            let sum = frames.map(|((a, b), c)| (a - 2.0 * b + c).powi(2)).sum::<f64>();
-            self.squares.push(sum / error.as_flattened().len().max(1) as f64);
+        let present = [pair.picture(), pair.truth()].map(|picture| colour::over(picture, self.background));
+        let last = std::mem::replace(&mut self.last, present);
+        let [picture, truth] = &self.last;
+        self.values.rmse.push(rmse(picture, truth));
+        if frames > 0 {
+            self.values.picture_change.push(rmse(picture, &last[0]));
+            self.values.truth_change.push(rmse(truth, &last[1]));
         }
-        self.last = [last, error];
+        let before = std::mem::replace(&mut self.before, difference(&last));
+        if frames + 1 >= FEWEST {
+            self.values.flicker.push(flicker(&before, &self.before, &difference(&self.last)));
+        }
         self.size = pair.size();
-        self.frames += 1;
         Ok(())
     }
 
@@ -82,23 +87,32 @@ impl Flicker {
     /// # Errors
     /// [`Error::Usage`] if there are fewer than three.
     pub fn value(&self) -> Result<f64> {
-        if self.frames < FEWEST {
-            let text = format!("flicker of {} frames: give {FEWEST} or more", self.frames);
+        let frames = self.values.rmse.len();
+        if frames < FEWEST {
+            let text = format!("flicker of {frames} frames: give {FEWEST} or more");
             return Err(Error::Usage(text));
         }
-        Ok((self.squares.iter().sum::<f64>() / (6 * self.squares.len()) as f64).sqrt())
+        let around = &self.values.flicker;
+        let squares = around.iter().map(|flicker| flicker * flicker).sum::<f64>();
+        Ok((squares / around.len() as f64).sqrt())
     }
 
-    /// Flicker around each inner frame, from the second to the last but one: the largest is where the picture pops.
-    pub fn values(&self) -> impl Iterator<Item = f64> {
-        self.squares.iter().map(|square| (square / 6.0).sqrt())
+    /// The values of each frame so far.
+    pub fn path(&self) -> &PathValues {
+        &self.values
     }
+}
 
-    fn error(&self, pair: &Pair<'_>) -> Vec<[f64; 3]> {
-        let [ours, truth] =
-            [pair.picture(), pair.truth()].map(|picture| colour::over(picture, self.background));
-        ours.iter().zip(&truth).map(|(a, b)| [0, 1, 2].map(|axis| a[axis] - b[axis])).collect()
-    }
+/// Errors of a frame: the picture's colours without the truth's.
+fn difference([picture, truth]: &[Vec<[f64; 3]>; 2]) -> Vec<[f64; 3]> {
+    picture.iter().zip(truth).map(|(a, b)| [0, 1, 2].map(|axis| a[axis] - b[axis])).collect()
+}
+
+/// Flicker around the second of three frames, by their errors.
+fn flicker(first: &[[f64; 3]], second: &[[f64; 3]], third: &[[f64; 3]]) -> f64 {
+    let frames = first.as_flattened().iter().zip(second.as_flattened()).zip(third.as_flattened());
+    let sum = frames.map(|((a, b), c)| (a - 2.0 * b + c).powi(2)).sum::<f64>();
+    (sum / (6 * third.as_flattened().len().max(1)) as f64).sqrt()
 }
 
 #[cfg(test)]
@@ -139,6 +153,23 @@ mod tests {
         }
         // One frame of three is off by a: its second difference is 2a.
         assert!((of(&[(0.5, 0.5), (0.75, 0.5), (0.5, 0.5)]) - 0.5 / 6f64.sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn every_frame_has_its_values() {
+        let mut flicker = Flicker::new(colour::BLACK);
+        for (ours, truth) in [(0.5, 0.5), (0.625, 0.625), (1.0, 0.75), (0.875, 0.875)] {
+            let (ours, truth) = (grey(ours), grey(truth));
+            flicker.add(&Pair::new(&ours, &truth).unwrap()).unwrap();
+        }
+        let PathValues { rmse, picture_change, truth_change, flicker } = flicker.path();
+        assert_eq!((&rmse[..], &truth_change[..]), (&[0.0, 0.0, 0.25, 0.0][..], &[0.125; 3][..]));
+        assert_eq!(picture_change[..], [0.125, 0.375, 0.125]);
+        let expected = [0.25, 0.5].map(|second: f64| second / 6f64.sqrt());
+        assert!(
+            flicker.len() == 2 && (0..2).all(|i| (flicker[i] - expected[i]).abs() < 1e-12),
+            "{flicker:?}"
+        );
     }
 
     #[test]

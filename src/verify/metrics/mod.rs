@@ -25,6 +25,7 @@ pub mod flicker;
 pub mod flip;
 pub mod normals;
 mod pair;
+pub mod path;
 pub mod psnr;
 mod regions;
 pub mod report;
