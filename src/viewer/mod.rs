@@ -117,7 +117,7 @@ impl Loaded {
     pub fn new(model: Model, method: Method) -> Self {
         Self {
             model,
-            surface: Err("A preview has no exact surface: wait until all points are loaded.".into()),
+            surface: Err("No exact surface of a preview: wait until all points are loaded.".into()),
             properties: None,
             colour_by: None,
             method,

@@ -100,7 +100,7 @@ impl Source {
     pub fn surface(&self) -> std::result::Result<&ExactSurface, &str> {
         match self.applied.attribute {
             ColourAttribute::Own => self.surface.as_ref().map_err(String::as_str),
-            _ => Err("The exact surface has the points' own colours: choose these."),
+            _ => Err("No exact surface under these colours: choose the points' own."),
         }
     }
 
@@ -374,7 +374,10 @@ mod tests {
             Some(Colours::Srgb8(parts.map(code).map(|[r, g, b]| [r, g, b, 0]).to_vec()))
         };
         assert_eq!(source.visible_model().surfels.colours, codes([Some(0.0), Some(0.5), Some(1.0)]));
-        assert!(source.surface().err().unwrap().contains("own colours"), "its colours are not the surface's");
+        assert!(
+            source.surface().err().unwrap().contains("under these colours"),
+            "its colours are not the surface's"
+        );
         source.colour_by(ColourAttribute::Property(0));
         wait(&mut source).unwrap();
         source.applied = source.wanted;

@@ -6,7 +6,7 @@ use crate::viewer::choices::Choices;
 use crate::viewer::comparison::{Against, Comparison, Task, Truth};
 use crate::viewer::events::{ComparisonInfo, Event};
 use crate::viewer::job::Job;
-use egui::{Button, Grid, ProgressBar, RichText, Slider, SliderClamping, Ui};
+use egui::{Button, Grid, ProgressBar, Slider, SliderClamping, Ui};
 use std::sync::Arc;
 use std::time::Duration;
 use surfel::geometry::ColourMap;
@@ -105,7 +105,7 @@ impl Errors {
             }
         });
         if let Some(reason) = unknown {
-            ui.label(RichText::new(reason).small());
+            ui.label(reason);
         }
         let Some(Ok(camera)) = &choices.camera else { return };
         let button = ui.add(Button::new("Compare this picture"));
