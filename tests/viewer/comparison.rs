@@ -1,13 +1,13 @@
 //! The error panel: comparison with the triangles of files.
 
-use crate::display::key;
+use crate::display::{PATIENCE, key};
 use crate::program::Program;
 use crate::view::View;
 use crate::{DRAW, setup};
 use serde_json::Value;
 use std::f32::consts::{PI, TAU};
 use std::fmt::Write;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Sides of a triangle mesh of the unit sphere: from pole to pole, and around.
 const SIDES: [u32; 2] = [24, 48];
@@ -74,13 +74,17 @@ fn compare(view: &View<'_>, button: [i16; 2]) {
 
 /// Waits until the window rests: folds open over several frames.
 fn settle(view: &View<'_>) {
+    let start = Instant::now();
     let mut before = view.display.pixels(view.window);
-    view.display.pixels_that(view.window, "rests", |now| {
+    loop {
         std::thread::sleep(Duration::from_millis(250));
-        let rests = *now == before;
-        before = now.clone();
-        rests
-    });
+        let now = view.display.pixels(view.window);
+        if now == before {
+            return;
+        }
+        before = now;
+        assert!(start.elapsed() < PATIENCE, "the window never rests");
+    }
 }
 
 /// The root mean square error that `surfel compare` finds between `surfel render` and `surfel truth` from a camera.

@@ -114,8 +114,8 @@ impl PathReport<'_> {
             (
                 plot("flicker", "Flicker around each frame", FLICKER, vec![flickers], pop)
                     .with(vec![mean], Vec::new()),
-                "Second differences of the error over the frame before, the frame and the next: an error that stays or changes evenly does not count. \
-                 The dashed line is the flicker of the whole path. The ring marks the popping, which is the largest value.",
+                "Second differences of the error over the frame before, the frame and the next: an error that stays or changes evenly does not \
+                 count, and a step counts around the frame before it and the one after. The dashed line is the flicker of the whole path. The ring marks the popping, which is the largest value.",
             ),
         ];
         let figure = |(plot, caption): (Plot, &str)| {

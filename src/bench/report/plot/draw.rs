@@ -65,7 +65,7 @@ fn paint(plot: &Plot, legend: &Legend, backend: SVGBackend<'_>) -> Drawn {
             join(&mut chart, line)?;
             for (x, y) in known(line).map(|point| chart.backend_coord(&point)) {
                 mark(&root, [x, y], &line.style)?;
-                let reach = (RADIUS * 1.2) as i32 * FINE;
+                let reach = (RADIUS * if kind == Kind::Ring { 2.0 } else { 1.2 }) as i32 * FINE;
                 occupied.add([x - reach, y - reach, x + reach, y + reach]);
             }
         }

@@ -139,22 +139,21 @@ fn colours_and_normals_are_interpolated() {
     assert!(Mesh::new("mesh", &cloud).err().unwrap().to_string().contains("no triangles"));
 }
 
-/// A texture of two columns, red and blue, over the unit square.
-fn textured() -> Cloud {
+/// A triangle with a texture of two columns, red and blue.
+fn textured(coordinates: [Vec2; 3]) -> Cloud {
     let colour = [[1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]].to_vec();
     let image = MipMap::new(&Picture { size: [2, 1], colour, ..Default::default() }).unwrap();
-    let coordinates = vec![Vec2::ZERO, Vec2::X, Vec2::Y];
     Cloud {
         positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
         triangles: vec![[0, 1, 2]],
-        texture: Some(Texture { image: Arc::new(image), coordinates }),
+        texture: Some(Texture { image: Arc::new(image), coordinates: coordinates.to_vec() }),
         ..Default::default()
     }
 }
 
 #[test]
 fn textures_are_sampled_between_the_corners() {
-    let mesh = Mesh::new("mesh", &textured()).unwrap();
+    let mesh = Mesh::new("mesh", &textured([Vec2::ZERO, Vec2::X, Vec2::Y])).unwrap();
     // Centres of both texels, and the middle between them.
     for (x, colour) in [(0.25, [1.0, 0.0, 0.0]), (0.75, [0.0, 0.0, 1.0]), (0.5, [0.5, 0.0, 0.5])] {
         let hit = mesh.trace(DVec3::new(x, 0.1, 4.0), DVec3::NEG_Z).unwrap();
@@ -197,9 +196,9 @@ fn digests_tell_meshes_apart() {
         Cloud { normals: Some(vec![Vec3::Z, Vec3::Z, Vec3::X]), ..usual.clone() },
         Cloud { triangles: vec![[0, 2, 1]], normals: Some(vec![Vec3::Z; 3]), ..usual.clone() },
         Cloud { colours: Some(Colours::Linear(vec![[0.5, 0.5, 0.6]; 3])), ..usual.clone() },
-        Cloud { colours: None, ..usual.clone() },
-        textured(),
-        Cloud { colours: None, normals: None, ..usual },
+        Cloud { colours: None, ..usual },
+        textured([Vec2::ZERO, Vec2::X, Vec2::Y]),
+        textured([Vec2::ZERO, Vec2::X, Vec2::ONE]),
     ];
     let mut digests = all.each_ref().map(digest).to_vec();
     digests.sort();
