@@ -13,15 +13,15 @@ use std::time::{Duration, Instant};
 const SIDES: [u32; 2] = [24, 48];
 
 /// Positions of controls in a window of this size whose folds above the error are closed, px.
-const SIZE: &str = "1000x400";
-const METHOD: [i16; 2] = [738, 69];
-const RENDER_SETTINGS: [i16; 2] = [738, 90];
-const ERROR: [i16; 2] = [738, 153];
-const AGAINST: [i16; 2] = [790, 174];
-const SURFACE: [i16; 2] = [770, 220];
-const COMPARE: [i16; 2] = [790, 195];
-/// The same below the two lines that say why there is no exact surface.
-const COMPARE_WITHOUT_SURFACE: [i16; 2] = [790, 228];
+const SIZE: &str = "500x300";
+const METHOD: [i16; 2] = [298, 69];
+const RENDER_SETTINGS: [i16; 2] = [298, 90];
+const ERROR: [i16; 2] = [298, 153];
+const AGAINST: [i16; 2] = [350, 174];
+const SURFACE: [i16; 2] = [330, 220];
+const COMPARE: [i16; 2] = [350, 195];
+/// The same below the three lines that say why there is no exact surface.
+const COMPARE_WITHOUT_SURFACE: [i16; 2] = [350, 243];
 
 /// A sphere with normals, radii and colours: every `step`th point; triangles only of all.
 fn sphere(step: usize) -> String {
