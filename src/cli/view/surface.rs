@@ -104,8 +104,8 @@ mod tests {
         let (mesh, points) = (of("mesh.ply", TRIANGLE, "3 0 1 2\n"), of("points.ply", "", ""));
         let lines = of("lines.ply", &format!("{TRIANGLE}{RIBBON}"), "3 0 1 2\n2 3\n");
         let scene = OsString::from("scene:sphere?points=100");
-        for known in [&[mesh.clone()][..], &[mesh.clone(), mesh.clone()], &[scene.clone()]] {
-            surface(known, None).map(drop).unwrap();
+        for known in [vec![mesh.clone()], vec![mesh.clone(), mesh.clone()], vec![scene.clone()]] {
+            surface(&known, None).map(drop).unwrap();
         }
         for (names, cause) in [
             (
