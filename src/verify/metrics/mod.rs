@@ -11,8 +11,9 @@
 //! | [`normals`] | angle between normals | less |
 //! | [`depth`] | difference of depths | less |
 //! | [`flicker`] | error that varies from frame to frame | less |
+//! | [`path`] | error, change and flicker of each frame along a camera path | |
 //!
-//! All but `flicker` take a [`Pair`], which has checked both pictures: equal size, complete, all values finite. A
+//! All but `flicker` and `path` take a [`Pair`], which has checked both pictures: equal size, complete, all values finite. A
 //! metric is therefore always a number. [`report::measure`] computes all of them.
 //!
 //! Colours are compared over a background, [composited](colour::over) with straight α: a pixel's colour is weighted by
