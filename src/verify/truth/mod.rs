@@ -104,19 +104,20 @@ pub fn render<S: Traceable + ?Sized>(
     let (bands, done) = (plan.bands(), AtomicU64::new(0));
     progress.at(STAGE, 0, bands.len() as u64);
     for some in bands.chunks(AHEAD * rayon::current_num_threads()) {
-        if progress.is_cancelled() {
-            return Err(Error::Cancelled);
-        }
-        let traced: Vec<_> = some
+        let traced: Option<Vec<_>> = some
             .par_iter()
             .map(|rows| {
+                // Each band may take a second.
+                if progress.is_cancelled() {
+                    return None;
+                }
                 let band = plan.trace(rows.clone());
                 progress.at(STAGE, done.fetch_add(1, Ordering::Relaxed) + 1, bands.len() as u64);
-                band
+                Some(band)
             })
             .collect();
         // Sequentially, so that rounding does not depend on the threads.
-        traced.iter().for_each(|band| sums.add(band));
+        traced.ok_or(Error::Cancelled)?.iter().for_each(|band| sums.add(band));
     }
     Ok(sums.resolve(settings, options.error))
 }

@@ -1,11 +1,14 @@
 //! The error of an image, and its reproducibility.
 
 use super::GAUSSIAN;
+use crate::error::Error;
 use crate::geometry::Camera;
 use crate::picture::Picture;
+use crate::progress::Progress;
 use crate::settings::{Settings, Shading};
 use crate::verify::scenes;
 use crate::verify::truth::{Filter, Options, Truth, render};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 const SIZE: [u32; 2] = [24, 24];
 
@@ -67,6 +70,31 @@ fn threads_do_not_matter() {
     let one = image(1);
     assert_eq!(one, image(3));
     assert!(one.picture.colour.iter().any(|pixel| pixel[3] > 0.0));
+}
+
+/// Cancels once a band is traced.
+#[derive(Default)]
+struct OneBand(AtomicU64);
+
+impl Progress for OneBand {
+    fn at(&self, _: &'static str, done: u64, _: u64) {
+        self.0.fetch_max(done, Ordering::Relaxed);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.0.load(Ordering::Relaxed) > 0
+    }
+}
+
+#[test]
+fn a_cancelled_image_traces_no_further_band() {
+    let surface = scenes::surface("scene:sphere").unwrap();
+    let camera = scenes::camera("scene:sphere").unwrap().camera(1.0, &surface.bounds()).unwrap();
+    let (settings, options, progress) = (Settings::default(), Options::default(), OneBand::default());
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let cancelled = pool.install(|| render(&*surface, &camera, &settings, [24, 64], &options, &progress));
+    assert!(matches!(cancelled, Err(Error::Cancelled)));
+    assert_eq!(progress.0.into_inner(), 1);
 }
 
 #[test]
