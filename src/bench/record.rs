@@ -2,13 +2,16 @@
 //! [metrics](crate::verify::metrics) define them.
 
 mod run;
+mod schema;
 
 pub use run::{
     Against, Axes, Blended, Clock, Error, Experiment, Float64Error, Implementation, Memory, PIXELS, Pass,
     Run, RunSettings, SPLATS, TRACED, Terms, Time, View, Viewpoint,
 };
+pub use schema::schema;
 
 use jiff::Timestamp;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Schema version of results; bumped on breaking changes.
@@ -18,7 +21,7 @@ pub const FORMAT: u32 = 4;
 pub const BEYOND_FLOAT32: &str = "beyond float32: ";
 
 /// The sessions of a report or table.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Results {
     /// [`FORMAT`] of the program that wrote it.
     pub format: u32,
@@ -27,7 +30,7 @@ pub struct Results {
 }
 
 /// Results of one call of the bench.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Session {
     /// Program, date and machine.
     pub provenance: Provenance,
@@ -40,7 +43,7 @@ pub struct Session {
 }
 
 /// Program, date and machine of a measurement.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Provenance {
     /// Version of surfel.
     pub version: String,
@@ -63,7 +66,7 @@ pub struct Provenance {
 }
 
 /// A machine.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Host {
     /// Model of the processor.
     pub cpu: String,
@@ -76,7 +79,7 @@ pub struct Host {
 }
 
 /// A Vulkan device.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Gpu {
     /// Name as the driver reports it.
     pub name: String,
@@ -89,7 +92,7 @@ pub struct Gpu {
 }
 
 /// A hard case: float32 against float64 as a parameter approaches the limits of float32.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Sweep {
     /// Name, words joined by hyphens.
     pub name: String,
@@ -104,7 +107,7 @@ pub struct Sweep {
 }
 
 /// A hard case at one value of its parameter.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SweepPoint {
     /// The parameter.
     pub value: f64,
@@ -121,7 +124,7 @@ pub struct SweepPoint {
 }
 
 /// Counts of faulty pixels, which no tolerance excuses.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Faults {
     /// Pixels with a NaN or an infinite value.
     pub non_finite: u64,
@@ -132,7 +135,7 @@ pub struct Faults {
 }
 
 /// Images of a run, each a PNG in base64.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Images {
     /// Caption.
     pub title: String,

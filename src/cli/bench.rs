@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
 use surfel::bench::command::quoted;
-use surfel::bench::record::FORMAT;
+use surfel::bench::record::{FORMAT, schema};
 use surfel::bench::subject::Subject;
 use surfel::bench::suites::UserInputs;
 use surfel::bench::{Results, SessionOptions, Suite, code, csv, measure, report, table};
@@ -20,6 +20,9 @@ use surfel::{Error, Progress, RasterizerChoice, Result};
 
 /// Measures, and writes the results. Earlier results and output paths are checked first.
 pub fn run(args: &Bench) -> Result<()> {
+    if args.schema {
+        return files::print_json(&schema().to_value());
+    }
     check_outputs(args)?;
     let mut results = Results { format: FORMAT, sessions: Vec::new() };
     for path in &args.from {

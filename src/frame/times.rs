@@ -17,6 +17,7 @@ pub struct Times {
 /// Statistics over measured frames, ms.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bench", derive(schemars::JsonSchema))]
 pub struct Statistics {
     /// Median; the mean of the two middle values of an even number.
     pub median: f64,
@@ -32,6 +33,7 @@ pub struct Statistics {
 /// Median with its 95 % confidence interval.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bench", derive(schemars::JsonSchema))]
 pub struct Interval {
     /// Median.
     pub median: f64,

@@ -6,6 +6,7 @@ mod baseline;
 mod bench;
 mod bench_advice;
 mod bench_report;
+mod bench_schema;
 mod capture;
 mod creases;
 mod discs;

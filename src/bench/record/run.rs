@@ -6,6 +6,7 @@ use crate::settings::splatting::Splatting;
 use crate::settings::{Alpha, Choice, Settings};
 use crate::verify::metrics::path::PathValues;
 use crate::verify::reference::Comparison;
+use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 use std::collections::BTreeMap;
 
@@ -17,7 +18,7 @@ pub const PIXELS: &str = "baseline-pixels";
 pub const TRACED: &str = "baseline-traced";
 
 /// A scene rendered with one implementation and one set of settings.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Run {
     /// Name of the suite.
     pub suite: String,
@@ -69,7 +70,7 @@ const fn one() -> f32 {
 }
 
 /// The viewpoint of a run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Viewpoint {
     /// Name of the [place](crate::bench::place::Place) relative to the subject's own viewpoint, which is `own`.
     pub place: String,
@@ -95,6 +96,7 @@ pub struct Viewpoint {
     Hash,
     Serialize,
     Deserialize,
+    JsonSchema,
     strum::EnumMessage,
     strum::EnumString,
     strum::IntoStaticStr,
@@ -130,7 +132,7 @@ pub enum Experiment {
 }
 
 /// Splats blended per pixel, over the pixels that have any.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Blended {
     /// Mean.
     pub mean: f64,
@@ -139,7 +141,7 @@ pub struct Blended {
 }
 
 /// The implementation of a run.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 pub struct Implementation {
     /// Name of the method.
     pub method: String,
@@ -148,7 +150,7 @@ pub struct Implementation {
 }
 
 /// The settings that affect time or error.
-#[derive(Clone, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, PartialOrd, Serialize, Deserialize, JsonSchema)]
 pub struct RunSettings {
     /// [`Settings::cutoff`](crate::Settings::cutoff), σ.
     pub cutoff: f32,
@@ -171,7 +173,7 @@ pub struct RunSettings {
 }
 
 /// The choice along each axis of [`Splatting`], named as the command line's options.
-#[derive(Clone, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, PartialOrd, Serialize, Deserialize, JsonSchema)]
 pub struct Axes {
     /// Image of a disc.
     pub footprint: String,
@@ -193,7 +195,9 @@ fn mask() -> String {
 }
 
 /// What measures the work of a frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, strum::IntoStaticStr)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema, strum::IntoStaticStr,
+)]
 #[serde(rename_all = "kebab-case")]
 #[strum(serialize_all = "kebab-case")]
 pub enum Clock {
@@ -207,7 +211,7 @@ pub enum Clock {
 }
 
 /// Times of frames, without read-back and without warm-up frames.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Time {
     /// Which of the times is the work of a frame: [`Time::work`].
     pub clock: Clock,
@@ -231,7 +235,7 @@ pub struct Time {
 }
 
 /// Time of a pass.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Pass {
     /// Its name.
     pub name: String,
@@ -240,7 +244,7 @@ pub struct Pass {
 }
 
 /// What the error of a picture is against.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Against {
     /// The exact picture of the surface.
@@ -252,7 +256,7 @@ pub enum Against {
 }
 
 /// Error of a picture against the truth, or what serves as such.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Error {
     /// What it is against.
     #[serde(default)]
@@ -282,7 +286,7 @@ pub struct Error {
 /// Parts of an RMSE, in its unit: linear light, white is 1.
 ///
 /// `silhouette² + inside² = rmse²`. The others are the change of the picture without their cause.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Terms {
     /// Pixels that the truth or the picture covers in part, or only one of both covers.
     pub silhouette: f64,
@@ -295,7 +299,7 @@ pub struct Terms {
 }
 
 /// Error of a float32 picture against the float64 reference, pixel by pixel; see [`Comparison`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Float64Error {
     /// Pixels that the reference covers.
     pub object_pixels: u64,
@@ -306,12 +310,15 @@ pub struct Float64Error {
     /// Largest difference of linear colour and α over the unambiguous pixels. NaN, in JSON null, if a value is not
     /// finite.
     #[serde(deserialize_with = "nan_of_null")]
+    #[schemars(with = "Option<f64>")]
     pub colour: f64,
     /// Largest difference of the normals' coordinates.
     #[serde(deserialize_with = "nan_of_null")]
+    #[schemars(with = "Option<f64>")]
     pub normal: f64,
     /// Largest relative difference of the depth.
     #[serde(deserialize_with = "nan_of_null")]
+    #[schemars(with = "Option<f64>")]
     pub depth: f64,
 }
 
@@ -321,7 +328,7 @@ fn nan_of_null<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
 }
 
 /// Memory, bytes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Memory {
     /// The scene's streams.
     pub scene: u64,

@@ -44,6 +44,9 @@ pub struct Bench {
     /// Writes one line per run as CSV; `-` for standard output, instead of the table
     #[arg(long, value_name = "FILE")]
     pub csv: Option<OsString>,
+    /// Prints the JSON schema of --json, and measures nothing
+    #[arg(long, exclusive = true)]
+    pub schema: bool,
     /// The Vulkan device
     #[command(flatten)]
     pub device: DeviceArgs,

@@ -9,6 +9,7 @@
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bench", derive(schemars::JsonSchema))]
 pub struct PathValues {
     /// Root mean square error of each frame.
     pub rmse: Vec<f64>,
