@@ -337,11 +337,17 @@ impl Pyramids {
     pub fn per_pixel(variant: &Variant) -> PerPixel {
         let format = WordFormat::of(variant);
         // The coarser levels are half as wide as the finest one, and as high.
-        let texels = [1.5, 1.5 / f64::from(1_u32 << (2 * finest_pushed(variant)))];
+        let texels = finest_texels(variant).map(|texels| 1.5 * texels);
         let images = names(storage(variant)).into_iter().zip(texels).flat_map(|(names, texels)| {
             format.images().map(move |i| (names[i], texels * pixel_bytes(FORMATS[i]) as f64))
         });
         images.collect()
+    }
+
+    /// Bytes per pixel of the finest stored level of the pulled and of the pushed pyramid.
+    pub fn finest_level(variant: &Variant) -> [f64; 2] {
+        let sample: u64 = WordFormat::of(variant).images().map(|i| pixel_bytes(FORMATS[i])).sum();
+        finest_texels(variant).map(|texels| texels * sample as f64)
     }
 
     /// Accesses of a pass that reads one pyramid and writes one.
@@ -355,6 +361,11 @@ impl Pyramids {
         let images = self.pyramids.iter().flat_map(|pyramid| &pyramid.images);
         images.map(|(name, image)| TargetInfo { name, format: image.format(), bytes: image.bytes() })
     }
+}
+
+/// Texels of the finest stored level of the pulled and of the pushed pyramid, per pixel.
+fn finest_texels(variant: &Variant) -> [f64; 2] {
+    [1.0, 1.0 / f64::from(1_u32 << (2 * finest_pushed(variant)))]
 }
 
 /// Finest level that push stores: shade may reconstruct level 0.

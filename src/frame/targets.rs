@@ -250,14 +250,18 @@ fn splat_resources(variant: &Variant) -> Vec<&'static shaders::Resource> {
     of_splats.iter().copied().chain(others).chain(clips).collect()
 }
 
+/// Bytes of a target's pixel.
+pub fn pixel_size(target: &TargetDescription) -> u64 {
+    match target.kind {
+        Kind::Image(_) => pixel_bytes(target.format),
+        Kind::Pixels(bytes) => bytes,
+    }
+}
+
 /// Bytes per pixel of a frame's targets.
 pub fn per_pixel(variant: &Variant) -> PerPixel {
-    let bytes = |target: &TargetDescription| match target.kind {
-        Kind::Image(_) => pixel_bytes(target.format) as f64,
-        Kind::Pixels(bytes) => bytes as f64,
-    };
-    let mut list: PerPixel =
-        describe(variant).iter().map(|target| (target.resource.name(), bytes(target))).collect();
+    let named = |target: &TargetDescription| (target.resource.name(), pixel_size(target) as f64);
+    let mut list: PerPixel = describe(variant).iter().map(named).collect();
     if variant.pull_push.is_some() {
         // The picture is last.
         list.splice(list.len() - 1..list.len() - 1, Pyramids::per_pixel(variant));

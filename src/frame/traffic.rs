@@ -1,0 +1,197 @@
+//! Traffic of passes, as their declarations imply it.
+
+use super::methods::{Path, passes};
+use super::pass::{Commands, Domain, Pass, Program, Programs};
+use super::pyramids::Pyramids;
+use super::renderer::RenderOptions;
+use super::resource::Resource;
+use super::splat_buffers::SPLAT;
+use super::splat_list::{ATTRIBUTE_ROW, BOX};
+use super::targets::{Kind, describe, pixel_size};
+use super::variant::{SceneVariant, Variant};
+use crate::scene::{CLUSTER, Streams};
+use crate::settings::{Rasterizer, Settings};
+use crate::vk::shaders::layout::Cluster;
+
+/// What a pass moves if each value that it declares to read or write moves once: streams, splats and targets.
+///
+/// Real traffic is higher where values are read again, as a splat is by every tile that it covers. It is lower in passes over tiles, which skip
+/// hidden splats, and in those over pyramids, which skip samples without a point. Clip lines, lines and triangles are left out.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PassTraffic {
+    /// Name of the pass.
+    pub name: &'static str,
+    /// Bytes per drawn surfel.
+    pub surfel: f64,
+    /// Bytes per pixel of the picture.
+    pub pixel: f64,
+    /// Pixels that are written to images, per pixel of the picture: 0 or 1.
+    pub written: f64,
+    /// Atomic operations per drawn surfel.
+    pub atomics: f64,
+}
+
+impl PassTraffic {
+    /// The passes of a frame of one scene with these streams, in their order, with the clears before them; `perspective` or parallel rays. The
+    /// device is not considered.
+    pub fn of(
+        scene: &Streams,
+        perspective: bool,
+        settings: &Settings,
+        options: &RenderOptions,
+        rasterizer: Rasterizer,
+    ) -> Vec<Self> {
+        let variant = Variant::new(&[*scene], perspective, settings, options, rasterizer);
+        let of_scene = SceneVariant::new(variant, *scene, false);
+        let mut list: Vec<Self> = Vec::new();
+        for pass in passes(&variant, Path::of(&variant), 1) {
+            for found in [cleared(pass, &variant), declared(pass, &of_scene, scene)] {
+                match list.iter_mut().find(|known| known.name == found.name) {
+                    Some(known) => known.add(&found),
+                    None if found.surfel + found.pixel > 0.0 => list.push(found),
+                    None => {}
+                }
+            }
+        }
+        list
+    }
+
+    /// Adds another step of the pass.
+    fn add(&mut self, step: &Self) {
+        self.surfel += step.surfel;
+        self.pixel += step.pixel;
+        self.written += step.written;
+        self.atomics += step.atomics;
+    }
+}
+
+/// The clear before a pass.
+fn cleared(pass: &Pass, variant: &Variant) -> PassTraffic {
+    let pixel = pass.clears.iter().map(|resource| per_pixel(*resource, variant)).sum();
+    PassTraffic { name: "clear", pixel, ..PassTraffic::default() }
+}
+
+/// The pass itself.
+fn declared(pass: &Pass, variant: &SceneVariant, scene: &Streams) -> PassTraffic {
+    let programs = match pass.programs {
+        Programs::OfFrame(programs) => programs(&variant.frame),
+        Programs::OfScene(programs) => programs(variant),
+    };
+    let attached = match &pass.commands {
+        Commands::Draws(targets) => {
+            targets.colours.iter().chain(&targets.depth).map(|(resource, _)| *resource).collect()
+        }
+        Commands::Dispatches | Commands::Steps(_) => Vec::new(),
+    };
+    let mut all: Vec<Resource> = Vec::new();
+    for resource in pass.reads.iter().chain(pass.writes).chain(&attached) {
+        if !all.contains(resource) {
+            all.push(*resource);
+        }
+    }
+    let over =
+        |domains: &[Domain]| programs.iter().any(|program: &Program| domains.contains(&program.domain));
+    let over_clusters = over(&[Domain::Clusters]);
+    let over_surfels = over(&[Domain::Surfels, Domain::SurfelSlots, Domain::VisibleClusters, Domain::Points]);
+    let of_splats = match over_clusters {
+        true => size_of::<Cluster>() as f64 / CLUSTER as f64,
+        false => all.iter().map(|resource| per_surfel(*resource, &variant.frame)).sum::<u64>() as f64,
+    };
+    let streams = if over_surfels { of_streams(pass, &variant.frame, scene) } else { 0 };
+    let is_image = |resource: &Resource| {
+        let targets = describe(&variant.frame);
+        targets.iter().any(|target| target.resource == *resource && matches!(target.kind, Kind::Image(_)))
+    };
+    let writes_image = pass.writes.iter().chain(&attached).any(is_image);
+    let projects = over_surfels && pass.writes.contains(&Resource::Nearest);
+    PassTraffic {
+        name: pass.name,
+        surfel: of_splats + streams as f64,
+        pixel: all.iter().map(|resource| per_pixel(*resource, &variant.frame)).sum(),
+        written: f64::from(u8::from(writes_image)),
+        atomics: f64::from(u8::from(projects)),
+    }
+}
+
+/// Bytes of a resource per surfel.
+fn per_surfel(resource: Resource, variant: &Variant) -> u64 {
+    match resource {
+        Resource::Splats => SPLAT,
+        Resource::Boxes if variant.is_tiled() => BOX,
+        Resource::Attributes if variant.is_tiled() => ATTRIBUTE_ROW * variant.attribute_rows().max(1),
+        Resource::Order if variant.unordered => 4,
+        _ => 0,
+    }
+}
+
+/// Bytes of a resource per pixel; of a pyramid, of its finest level.
+fn per_pixel(resource: Resource, variant: &Variant) -> f64 {
+    let target = describe(variant).into_iter().find(|target| target.resource == resource);
+    match (resource, target) {
+        (_, Some(target)) => pixel_size(&target) as f64,
+        (Resource::Pulled, None) if variant.pull_push.is_some() => Pyramids::finest_level(variant)[0],
+        (Resource::Pushed, None) if variant.pull_push.is_some() => Pyramids::finest_level(variant)[1],
+        _ => 0.0,
+    }
+}
+
+/// Bytes of a scene's streams per surfel that a pass over surfels reads: all for splats, with colours if sums are stored beside them; for
+/// points the positions, and the normals if back faces are culled.
+fn of_streams(pass: &Pass, variant: &Variant, scene: &Streams) -> u64 {
+    let makes_splats = pass.writes.contains(&Resource::Splats);
+    let is_read = |name: &str| match name {
+        "positions" => true,
+        "normals" => makes_splats || variant.cull_back,
+        "colours" => makes_splats && variant.is_tiled() && variant.colours,
+        "weights" => makes_splats && variant.weights,
+        _ => makes_splats,
+    };
+    scene.per_surfel().into_iter().filter(|(name, _)| is_read(name)).map(|(_, bytes)| bytes).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::ColourStream;
+    use crate::settings::Shading;
+    use crate::settings::methods::{Method, perspective_ewa, pull_push};
+
+    fn of(method: Method, rasterizer: Rasterizer) -> Vec<PassTraffic> {
+        let settings = Settings { shading: Shading::Lit, ..method.settings() };
+        let streams = Streams::circles(ColourStream::None);
+        PassTraffic::of(&streams, true, &settings, &RenderOptions::default(), rasterizer)
+    }
+
+    fn named(list: &[PassTraffic], name: &str) -> PassTraffic {
+        list.iter().find(|pass| pass.name == name).unwrap_or_else(|| panic!("{name} in {list:?}")).clone()
+    }
+
+    #[test]
+    fn splats_move_from_their_streams_to_tiles() {
+        let computed = of(perspective_ewa::METHOD, Rasterizer::Compute);
+        // Streams 28, splat 64, box 16, a row of attributes 16.
+        assert_eq!(named(&computed, "footprint").surfel, 28.0 + 64.0 + 16.0 + 16.0);
+        // They are read again; the picture has four floats a pixel.
+        let surface = PassTraffic { name: "surface", surfel: 96.0, pixel: 16.0, written: 1.0, atomics: 0.0 };
+        assert_eq!(named(&computed, "surface"), surface);
+        let drawn = of(perspective_ewa::METHOD, Rasterizer::Draw);
+        // Depth 4 and sums 16, of which visibility has the depth alone.
+        let attribute =
+            PassTraffic { name: "attribute", surfel: 64.0, pixel: 20.0, written: 1.0, atomics: 0.0 };
+        assert_eq!(named(&drawn, "attribute"), attribute);
+        assert_eq!(named(&drawn, "visibility").pixel, 4.0);
+        // Depth and sums read, the picture written.
+        assert_eq!(named(&drawn, "normalize").pixel, 4.0 + 16.0 + 16.0);
+    }
+
+    #[test]
+    fn a_point_is_an_atomic_minimum() {
+        let passes = of(pull_push::METHOD, Rasterizer::Compute);
+        let project = named(&passes, "project");
+        // Positions and, as back faces are culled, normals; a distance and an id a pixel.
+        assert_eq!((project.surfel, project.pixel, project.atomics), (24.0, 8.0, 1.0));
+        assert_eq!(named(&passes, "clear").pixel, 8.0);
+        assert!(passes.iter().filter(|pass| pass.name != "project").all(|pass| pass.atomics == 0.0));
+        assert!(passes.iter().all(|pass| pass.surfel >= 0.0 && pass.pixel >= 0.0));
+    }
+}
