@@ -1,5 +1,25 @@
 // Made from shaders-glsl; see tools/shader_build.
 
+/// The compute stage of `shaders-glsl/atomics.glsl`.
+pub static ATOMICS_COMPUTE: Module = Module {
+    name: "atomics_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("atomics_compute.spv"),
+    constants: &[],
+    resources: &[(&resource::WORDS, true)],
+    push: size_of::<layout::AtomicOptions>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/atomics.glsl`.
+pub static ATOMICS_WIDE_COMPUTE: Module = Module {
+    name: "atomics_wide_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("atomics_wide_compute.spv"),
+    constants: &[],
+    resources: &[(&resource::WIDE_WORDS, true)],
+    push: size_of::<layout::AtomicOptions>() as u32,
+};
+
 /// The vertex stage of `shaders-glsl/attribute.glsl`.
 pub static ATTRIBUTE_VERTEX: Module = Module {
     name: "attribute_vertex",
@@ -228,6 +248,26 @@ pub static FETCH_EMPTY_COMPUTE: Module = Module {
     constants: &[17, 33, 34, 38, 39],
     resources: &[(&resource::FRAME, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
     push: 0,
+};
+
+/// The vertex stage of `shaders-glsl/fill.glsl`.
+pub static FILL_VERTEX: Module = Module {
+    name: "fill_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("fill_vertex.spv"),
+    constants: &[],
+    resources: &[],
+    push: 0,
+};
+
+/// The fragment stage of `shaders-glsl/fill.glsl`.
+pub static FILL_FRAGMENT: Module = Module {
+    name: "fill_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("fill_fragment.spv"),
+    constants: &[],
+    resources: &[],
+    push: size_of::<layout::FillOptions>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/footprint.glsl`.
@@ -1202,6 +1242,24 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
     };
 
+    /// `WideWords`, first in `shaders-glsl/atomics.glsl`.
+    pub static WIDE_WORDS: Resource = Resource {
+        name: "WideWords",
+        set: 0,
+        binding: 0,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `Words`, first in `shaders-glsl/atomics.glsl`.
+    pub static WORDS: Resource = Resource {
+        name: "Words",
+        set: 0,
+        binding: 0,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
     /// `attribute_texels`, first in `shaders-glsl/attribute.glsl`.
     pub static ATTRIBUTE_TEXELS: Resource = Resource {
         name: "attribute_texels",
@@ -1539,6 +1597,19 @@ pub mod resource {
 /// The blocks and structs of the shaders, byte for byte.
 #[allow(non_snake_case, non_camel_case_types)]
 pub mod layout {
+    /// `AtomicOptions`, 8 bytes, first in `shaders-glsl/atomics.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct AtomicOptions {
+        /// Byte 0.
+        pub mask: u32,
+        /// Byte 4.
+        pub seed: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(AtomicOptions, mask) == 0);
+    const _: () = assert!(std::mem::offset_of!(AtomicOptions, seed) == 4);
+    const _: () = assert!(std::mem::size_of::<AtomicOptions>() == 8);
+
     /// `Chunk`, 40 bytes, first in `shaders-glsl/attribute.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -1617,6 +1688,16 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Counts, culled) == 0);
     const _: () = assert!(std::mem::offset_of!(Counts, in_clusters) == 20);
     const _: () = assert!(std::mem::size_of::<Counts>() == 24);
+
+    /// `FillOptions`, 16 bytes, first in `shaders-glsl/fill.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct FillOptions {
+        /// Byte 0.
+        pub scale: [f32; 4],
+    }
+    const _: () = assert!(std::mem::offset_of!(FillOptions, scale) == 0);
+    const _: () = assert!(std::mem::size_of::<FillOptions>() == 16);
 
     /// `Frame`, 176 bytes, first in `shaders-glsl/attribute.glsl`.
     #[repr(C)]

@@ -3,7 +3,7 @@
 
 use super::format;
 use super::group::distinct;
-use super::record::{Float64Error, Memory, Results, Run, Session, SweepPoint};
+use super::record::{Ceilings, Float64Error, Memory, PassWork, Rate, Results, Run, Session, SweepPoint};
 use crate::error::{Error, Result};
 use crate::frame::times::Statistics;
 use crate::settings::Choice;
@@ -14,7 +14,8 @@ use std::collections::BTreeSet;
 type Cell = (String, String);
 
 /// One row per run: its session, settings, times, error against the truth and error against float64. Each metric has a
-/// column of its name. Times have `NAME`, `NAME:min`, `NAME:max`, and `NAME:low` and `NAME:high` of the median's interval; passes are `pass:NAME`. `stale` says whether the
+/// column of its name. Times have `NAME`, `NAME:min`, `NAME:max`, and `NAME:low` and `NAME:high` of the median's interval; passes are `pass:NAME`,
+/// and their least work is `pass:NAME:bytes`, `pass:NAME:pixels` and `pass:NAME:atomics`. `stale` says whether the
 /// session's source digest differs from `code`. Times are in ms, memory in bytes.
 ///
 /// # Errors
@@ -93,8 +94,16 @@ fn provenance(session: &Session, code: &str) -> Vec<Cell> {
         ("device", device.map(|gpu| gpu.name.clone()).unwrap_or_default()),
         ("driver", device.map(|gpu| gpu.driver.clone()).unwrap_or_default()),
         ("validated", device.map(|gpu| gpu.validated.to_string()).unwrap_or_default()),
+        ("copy_bytes_per_s", rate(session, |ceilings| Some(ceilings.copy))),
+        ("atomics_per_s", rate(session, |ceilings| Some(ceilings.atomics))),
+        ("wide_atomics_per_s", rate(session, |ceilings| ceilings.wide_atomics)),
+        ("fill_pixels_per_s", rate(session, |ceilings| Some(ceilings.fill))),
     ])
     .collect()
+}
+
+fn rate(session: &Session, of: fn(&Ceilings) -> Option<Rate>) -> String {
+    number(session.ceilings.as_ref().and_then(of).map(|rate| rate.per_second.median))
 }
 
 fn what(run: &Run) -> Vec<Cell> {
@@ -163,9 +172,19 @@ fn spread(name: &str, times: Option<Statistics>) -> [Cell; 5] {
     ]
 }
 
-fn pass(run: &Run, name: &str) -> [Cell; 5] {
+/// Times and least work of a pass.
+fn pass(run: &Run, name: &str) -> impl Iterator<Item = Cell> {
     let times = run.time.as_ref().and_then(|time| time.passes.iter().find(|pass| pass.name == name));
-    spread(&format!("pass:{name}"), times.map(|pass| pass.ms))
+    let work = run.work.iter().find(|work| work.name == name && times.is_some());
+    let of = |what: &str, value: fn(&PassWork) -> u64| {
+        (format!("pass:{name}:{what}"), work.map(|work| value(work).to_string()).unwrap_or_default())
+    };
+    let work = [
+        of("bytes", |work| work.bytes),
+        of("pixels", |work| work.pixels),
+        of("atomics", |work| work.atomics),
+    ];
+    spread(&format!("pass:{name}"), times.map(|pass| pass.ms)).into_iter().chain(work)
 }
 
 fn error(run: &Run) -> Vec<Cell> {

@@ -6,6 +6,7 @@ pub use traced::{RAYS, TracedEngine};
 
 use super::record::{Axes, Clock, Implementation, Memory, PIXELS, SPLATS, TRACED, Time};
 use crate::error::Result;
+use crate::frame::PassTraffic;
 use crate::geometry::{Camera, Surfels};
 use crate::picture::Picture;
 use crate::settings::Settings;
@@ -101,12 +102,19 @@ pub trait LoadedEngine {
     fn time_of_picture(&self) -> Option<Time> {
         None
     }
+
+    /// Traffic of the last frame's passes; empty if it is unknown.
+    fn traffic(&self, _: &Camera, _: &Settings) -> Vec<PassTraffic> {
+        Vec::new()
+    }
 }
 
 /// A model on a Vulkan device, with one renderer for colour alone and one that adds normals and depths.
 pub struct DeviceEngine {
     clock: Clock,
     scene: Rc<Scene>,
+    /// Of the frames with colour alone.
+    options: RenderOptions,
     colour_only: Renderer,
     with_depth: Renderer,
 }
@@ -133,6 +141,7 @@ impl DeviceEngine {
                 None => Clock::Wall,
             },
             scene,
+            options: colour_only,
             colour_only: Renderer::new(device, colour_only)?,
             with_depth: Renderer::new(device, with_depth)?,
         })
@@ -159,6 +168,14 @@ impl LoadedEngine for DeviceEngine {
             splats: self.colour_only.splat_bytes(),
             targets: self.colour_only.targets().iter().map(|target| target.bytes).sum(),
         }
+    }
+
+    fn traffic(&self, camera: &Camera, settings: &Settings) -> Vec<PassTraffic> {
+        let (Some(rasterizer), Ok(projection)) = (self.colour_only.rasterizer(), camera.projection()) else {
+            return Vec::new();
+        };
+        let options = RenderOptions { precision: self.colour_only.precision(), ..self.options };
+        PassTraffic::of(&self.scene.streams(), projection.perspective, settings, &options, rasterizer)
     }
 }
 

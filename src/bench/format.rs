@@ -1,7 +1,10 @@
 //! Numbers and names as text.
 
 use super::disturbance::{self, Disturbance};
-use super::record::{Clock, Implementation, Memory, Provenance, Run, RunSettings, Session};
+use super::group::distinct;
+use super::record::{
+    Ceilings, Clock, Implementation, Memory, Provenance, Rate, Run, RunSettings, Session, Sweep,
+};
 use crate::settings::methods::Method;
 
 /// Rounds to `digits` significant digits, without trailing zeros; uses a power of ten if the number would be long.
@@ -53,6 +56,50 @@ pub fn count(points: u64) -> String {
 /// Milliseconds, without the unit.
 pub fn ms(value: f64) -> String {
     significant(value, 3)
+}
+
+/// A number with a prefix of ten to the power of three: `8.1 G`.
+fn with_prefix(value: f64) -> String {
+    let prefixes = [(1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k")];
+    match prefixes.into_iter().find(|(size, _)| value >= *size) {
+        Some((size, prefix)) => format!("{} {prefix}", significant(value / size, 3)),
+        None => format!("{} ", significant(value, 3)),
+    }
+}
+
+/// Median of a rate with its unit.
+pub fn rate(rate: &Rate, unit: &str) -> String {
+    with_prefix(rate.per_second.median) + unit
+}
+
+/// The rates of a device, on one line.
+pub fn ceilings(ceilings: &Ceilings) -> String {
+    let wide = ceilings.wide_atomics.map(|wide| format!(" of 32 bits, {} of 64 bits", rate(&wide, "/s")));
+    let [copy, fill] = [rate(&ceilings.copy, "B/s"), rate(&ceilings.fill, "px/s")];
+    let atomics = rate(&ceilings.atomics, "/s") + &wide.unwrap_or_default();
+    format!("copy bandwidth {copy}, atomics {atomics}, fill rate {fill}")
+}
+
+/// A share in per cent.
+pub fn percent(share: f64) -> String {
+    format!("{} %", significant(100.0 * share, 2))
+}
+
+/// How many runs and values of hard cases the time of a session did not suffice for, of how many; none if it was enough.
+pub fn missing_counts(session: &Session) -> Option<[usize; 2]> {
+    let count: usize = session.missing.iter().map(|missing| missing.count).sum();
+    // Variants of a method share their values.
+    let of_sweep = |sweep: &Sweep| {
+        distinct(sweep.points.iter().map(|point| (point.value.to_bits(), &point.implementation.method))).len()
+    };
+    let values: usize = session.sweeps.iter().map(of_sweep).sum();
+    (count > 0).then(|| [count, count + session.runs.len() + values])
+}
+
+/// [`missing_counts`] as a sentence.
+pub fn missing(session: &Session) -> Option<String> {
+    let [count, all] = missing_counts(session)?;
+    Some(format!("{count} of {all} runs were not measured, as the time was over."))
 }
 
 /// A method with options.
@@ -227,6 +274,8 @@ mod tests {
         for (value, text) in cases {
             assert_eq!(significant(value, 3), text);
         }
+        let prefixed = [0.5, 12_345.0, 8.1e9, 4.8e12].map(with_prefix);
+        assert_eq!(prefixed, ["0.5 ", "12.3 k", "8.1 G", "4.8 T"]);
         assert_eq!(significant(f64::NEG_INFINITY, 3), "−∞");
         assert_eq!([500, 10_000, 1_500_000, 999_999].map(count), ["500", "10 k", "1.5 M", "1 M"]);
     }

@@ -14,14 +14,16 @@
 //! | [`stopwatch`] | times of frames |
 //! | [`disturbance`] | why times may not be those of the work |
 //! | [`error_terms`], [`hidden`] | parts of the error |
-//! | [`runner`], [`session`] | execution of plans |
+//! | [`ceilings`], [`work`] | rates of the device, and what passes do of them at least |
+//! | [`runner`], [`session`], [`time_limit`] | execution of plans |
 //! | [`papers`] | effects, costs and tables of the papers |
 //! | [`hard`] | numerically hard cases: float32 against float64 |
 //! | [`command`] | the command of a picture |
 //! | [`record`] | results, as stored in JSON |
 //! | [`table`], [`csv`], [`report`] | results as text, CSV and HTML |
-//! | [`recommendations`], [`standings`], [`convergence`] | evaluation of the results |
+//! | [`recommendations`], [`standings`], [`convergence`], [`machines`] | evaluation of the results |
 
+pub mod ceilings;
 pub mod code;
 pub mod command;
 pub mod convergence;
@@ -35,6 +37,7 @@ pub mod hard;
 pub mod hidden;
 pub mod images;
 mod load;
+pub mod machines;
 pub mod papers;
 pub mod place;
 pub mod plan;
@@ -48,6 +51,8 @@ pub mod stopwatch;
 pub mod subject;
 pub mod suites;
 mod table;
+pub mod time_limit;
+pub mod work;
 
 pub use record::Results;
 pub use session::{SessionOptions, measure};

@@ -1,9 +1,11 @@
 //! Results as stored in JSON: times in milliseconds, memory in bytes, colours linear, errors as their
 //! [metrics](crate::verify::metrics) define them.
 
+mod ceilings;
 mod run;
 mod schema;
 
+pub use ceilings::{Ceilings, PassWork, Rate, Shares};
 pub use run::{
     Against, Axes, Blended, Clock, Error, Experiment, Float64Error, Implementation, Memory, PIXELS, Pass,
     Run, RunSettings, SPLATS, TRACED, Terms, Time, View, Viewpoint,
@@ -40,6 +42,31 @@ pub struct Session {
     pub sweeps: Vec<Sweep>,
     /// Images of some of the runs.
     pub images: Vec<Images>,
+    /// Rates that bound the passes of the device; none if they were not measured.
+    #[serde(default)]
+    pub ceilings: Option<Ceilings>,
+    /// What the time did not suffice for.
+    #[serde(default)]
+    pub missing: Vec<Missing>,
+}
+
+/// Runs, or values of a hard case, that were not measured because the time was over.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Missing {
+    /// Name of the suite.
+    pub suite: String,
+    /// Name of the experiment; of a hard case, its own.
+    pub experiment: String,
+    /// See [`Run::paper_item`].
+    pub paper_item: String,
+    /// The scene with its parameters, without the number of points; empty for a hard case.
+    pub scene: String,
+    /// Number of surfels; 0 for a hard case.
+    pub points: u64,
+    /// Width and height, px; 0 for a hard case.
+    pub size: [u32; 2],
+    /// How many.
+    pub count: usize,
 }
 
 /// Program, date and machine of a measurement.

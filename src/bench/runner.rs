@@ -2,10 +2,10 @@
 
 use super::engine::{CpuEngine, DeviceEngine, Engine, LoadedEngine, TracedEngine};
 use super::papers::details;
-use super::plan::Plan;
+use super::plan::{Measurements, Plan};
 use super::record::{self, Against, Float64Error, Images, Run, RunSettings, Time};
 use super::subject::{Subject, pixel_angle};
-use super::{error_terms, hidden, images, stopwatch};
+use super::{error_terms, hidden, images, stopwatch, work};
 use crate::Scene;
 use crate::capture::{self, capture};
 use crate::error::{Error, Result};
@@ -25,6 +25,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::Arc;
+use std::time::Instant;
 
 /// Frames of the camera path for flicker.
 const PATH: u32 = 6;
@@ -45,6 +46,8 @@ pub struct Options {
     pub truth: truth::Options,
     /// Number of timed frames.
     pub effort: stopwatch::Effort,
+    /// Time after which no further plan is measured.
+    pub until: Option<Instant>,
 }
 
 /// Executes plans one by one; fastest if plans of one scene follow each other.
@@ -118,17 +121,25 @@ impl Runner {
     }
 
     /// Executes plans that are [beside](Plan::is_beside) each other, and hands each run over in their order. The frames that are timed take
-    /// turns, of as many plans as a limit of memory permits. A run that cannot be rendered is refused.
+    /// turns, of as many plans as a limit of memory permits. A run that cannot be rendered is refused. Plans that remain when the
+    /// [time](Options::until) is over have no run.
     ///
     /// # Errors
     /// If the device is lost.
     pub fn run_together(&mut self, plans: &[Plan], done: &mut dyn FnMut(Run)) -> Result<()> {
         let fewer = (MOST_BYTES / plans.first().map_or(1, bytes_about)).max(1) as usize;
         for plans in plans.chunks(fewer) {
+            if self.is_over() {
+                return Ok(());
+            }
             let mut opened: Vec<Result<Opened<'_>>> = plans.iter().map(|plan| self.open(plan)).collect();
             let mut times = time_all(&mut opened, &self.options.effort).into_iter();
             let mut runs = Vec::new();
             for (plan, opened) in plans.iter().zip(opened) {
+                // Times are measured already.
+                if self.is_over() && plan.measurements != Measurements::TIME {
+                    break;
+                }
                 let run = opened.and_then(|opened| {
                     let time = plan.measurements.time.then(|| times.next()).flatten().transpose()?;
                     self.fill(opened, time)
@@ -150,6 +161,11 @@ impl Runner {
             }
         }
         Ok(())
+    }
+
+    /// Whether the time is over.
+    fn is_over(&self) -> bool {
+        self.options.until.is_some_and(|until| Instant::now() >= until)
     }
 
     /// The images of all runs.
@@ -253,6 +269,10 @@ impl Runner {
         }
         run.memory = engine.memory();
         run.time = run.time.or(engine.time_of_picture());
+        if run.time.is_some() {
+            let drawn = work::drawn(&job.model.surfels, &job.camera, settings);
+            run.work = work::of(&engine.traffic(&job.camera, settings), drawn, plan.size);
+        }
         Ok(run)
     }
 
@@ -487,6 +507,7 @@ fn blank(plan: &Plan, from: Option<Viewpoint>) -> Run {
         ratio: None,
         error: None,
         float64_error: None,
+        work: Vec::new(),
         memory: Default::default(),
         overlap: None,
         blended: None,

@@ -1,10 +1,12 @@
 //! One call of the bench: all runs of some suites on one machine.
 
-use super::plan::Plan;
-use super::record::{Clock, Gpu, Host, Provenance, Run, RunSettings, SPLATS, Session, Sweep, Time};
+use super::record::{
+    Ceilings, Clock, Gpu, Host, Missing, Provenance, Run, RunSettings, SPLATS, Session, Sweep, Time,
+};
 use super::runner::{Options, Runner};
 use super::suites::{Suite, UserInputs};
-use super::{code, hard};
+use super::time_limit::Estimates;
+use super::{ceilings, code, hard, time_limit};
 use crate::error::{Error, Result};
 use crate::progress::Progress;
 use crate::settings::{Choice, RasterizerChoice};
@@ -12,7 +14,7 @@ use crate::vk::Device;
 use jiff::Timestamp;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use sysinfo::System;
 
 /// Stage of the progress, in runs.
@@ -32,6 +34,8 @@ pub struct SessionOptions {
     pub validated: bool,
     /// Folder that caches exact pictures.
     pub cache: Option<PathBuf>,
+    /// Time for all suites together: see [`time_limit`].
+    pub limit: Option<Duration>,
     /// The command that repeats the session.
     pub command: String,
 }
@@ -40,39 +44,56 @@ pub struct SessionOptions {
 /// lost device, is returned beside the results so far.
 pub fn measure(options: &SessionOptions, progress: &dyn Progress) -> (Session, Result<()>) {
     let (date, start) = (Timestamp::now(), Instant::now());
+    let end = options.limit.map(|limit| start + limit);
+    let ceilings = options.suites.contains(&Suite::Scaling).then(|| ceilings(options)).flatten();
     let plans = |suite: &Suite| suite.plans(&options.inputs);
     let total = options.suites.iter().map(|suite| plans(suite).len() as u64).sum();
-    let (mut runs, mut images) = (Vec::new(), Vec::new());
+    let (mut runs, mut images, mut missing) = (Vec::new(), Vec::new(), Vec::new());
     progress.at(STAGE, 0, total);
-    let mut ended = options.suites.iter().try_for_each(|suite| {
+    let mut ended = options.suites.iter().enumerate().try_for_each(|(index, suite)| {
+        // The hard cases are last.
+        let left = options.suites.len() - index + usize::from(options.suites[..index].contains(&Suite::Hard));
+        let (plans, until) = (plans(suite), time_limit::end_of_suite(end, left));
         let of_suite = Options {
             device: options.device.clone(),
             rasterizer: options.rasterizer,
             cache: options.cache.clone(),
-            truth: suite.truth(),
-            effort: suite.effort(),
+            truth: time_limit::truth(*suite, until),
+            effort: time_limit::effort(suite.effort(), plans.len(), until),
+            until,
         };
         let (mut runner, before) =
             (Runner::new(of_suite, options.inputs.all().cloned().collect()), images.len());
-        let done = plans(suite).chunk_by(Plan::is_beside).try_for_each(|plans| {
-            let (begin, plan) = (Instant::now(), &plans[0]);
-            runner.run_together(plans, &mut |mut run| {
+        let mut estimates = Estimates::default();
+        let done = time_limit::groups(plans, until.is_some()).into_iter().try_for_each(|plans| {
+            if !estimates.fit(&plans, until) {
+                missing.extend(time_limit::missing(&plans));
+                return Ok(());
+            }
+            let (begin, plan, first) = (Instant::now(), &plans[0], runs.len());
+            runner.run_together(&plans, &mut |mut run| {
                 run.images.iter_mut().for_each(|index| *index += before);
                 runs.push(run);
                 progress.at(STAGE, runs.len() as u64, total);
             })?;
+            missing.extend(time_limit::missing(&plans[runs.len() - first..]));
             let (scene, points, experiment) = (&plan.scene, plan.points, plan.experiment);
             log::info!("{scene} {points} {experiment:?}: {} runs in {:.2?}", plans.len(), begin.elapsed());
+            estimates.add(plans, begin.elapsed());
             Ok(())
         });
         images.extend(runner.images());
         done
     });
+    progress.at(STAGE, total, total);
     compare_times(&mut runs);
     let mut sweeps = Vec::new();
     if ended.is_ok() && options.suites.contains(&Suite::Hard) {
-        match hard(options, progress) {
-            Ok(swept) => sweeps = swept,
+        match hard(options, end, progress) {
+            Ok((swept, late)) => {
+                sweeps = swept;
+                missing.extend(late);
+            }
             Err(error) => ended = Err(error),
         }
     }
@@ -87,12 +108,26 @@ pub fn measure(options: &SessionOptions, progress: &dyn Progress) -> (Session, R
         host: host(),
         device: options.device.as_deref().map(|device| gpu(device, options.validated)),
     };
-    (Session { provenance, runs, sweeps, images }, ended)
+    (Session { provenance, runs, sweeps, images, ceilings, missing }, ended)
 }
 
-fn hard(options: &SessionOptions, progress: &dyn Progress) -> Result<Vec<Sweep>> {
+/// Rates of the device; none, with a warning, if they cannot be measured.
+fn ceilings(options: &SessionOptions) -> Option<Ceilings> {
+    let device = options.device.as_ref()?;
+    let measured = ceilings::measure(device, &ceilings::Sizes::of(device));
+    measured.map_err(|error| log::warn!("no shares of the device's rates: {error}")).ok()
+}
+
+fn hard(
+    options: &SessionOptions,
+    until: Option<Instant>,
+    progress: &dyn Progress,
+) -> Result<(Vec<Sweep>, Vec<Missing>)> {
     let none = || Error::NoDevice("the hard cases need one; list devices with `surfel devices`".into());
-    hard::run(options.device.as_ref().ok_or_else(none)?, &hard::Options::default(), progress)
+    let cases = hard::Options { until, ..Default::default() };
+    let sweeps = hard::run(options.device.as_ref().ok_or_else(none)?, &cases, progress)?;
+    let missing = hard::missing(&cases, &sweeps);
+    Ok((sweeps, missing))
 }
 
 /// Computes times relative to the CPU baseline for as many points and pixels with default settings. Of several

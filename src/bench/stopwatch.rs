@@ -21,6 +21,8 @@ pub struct Effort {
     pub most: usize,
     /// Time for all frames together.
     pub budget: Duration,
+    /// Time after which one frame suffices.
+    pub until: Option<Instant>,
 }
 
 /// Warm-up time for devices that reduce their clock when idle.
@@ -28,7 +30,7 @@ const WARM: Duration = Duration::from_millis(50);
 
 impl Default for Effort {
     fn default() -> Self {
-        Self { warmup: 1, least: 7, most: 1000, budget: Duration::from_secs(2) }
+        Self { warmup: 1, least: 7, most: 1000, budget: Duration::from_secs(2), until: None }
     }
 }
 
@@ -60,6 +62,9 @@ struct Turns {
 impl Turns {
     fn wants_more(&self, effort: &Effort) -> bool {
         let count = self.whole.len();
+        if effort.until.is_some_and(|until| Instant::now() >= until) {
+            return count == 0;
+        }
         count < effort.least || (count < effort.most && self.spent < effort.budget)
     }
 

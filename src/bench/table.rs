@@ -50,6 +50,8 @@ pub fn table(results: &Results, code: &str, commit: &str) -> String {
         if let Some(stale) = format::stale(&session.provenance, code, commit) {
             let _ = writeln!(text, "STALE: {stale}");
         }
+        let ceilings = session.ceilings.as_ref().map(format::ceilings);
+        ceilings.into_iter().chain(format::missing(session)).for_each(|line| text += &(line + "\n"));
         for group in groups(&session.runs) {
             let run = group[0];
             let common = common(session, &group);

@@ -26,7 +26,9 @@ pub fn run(args: &Bench) -> Result<()> {
     check_outputs(args)?;
     let mut results = Results { format: FORMAT, sessions: Vec::new() };
     for path in &args.from {
-        results.sessions.extend(read(path)?.sessions);
+        for file in files_of(path)? {
+            results.sessions.extend(read(&file)?.sessions);
+        }
     }
     let suites = suites(args);
     if !suites.is_empty() {
@@ -152,6 +154,7 @@ fn command(args: &Bench, suites: &[Suite]) -> String {
     let named = suites.iter().filter(|suite| **suite != Suite::Inputs);
     option("suite", list(named.map(|suite| suite.name().to_owned()).collect()));
     option("scans", path(&args.scans));
+    option("minutes", args.minutes.map(|limit| format!("{}", limit.as_secs_f64() / 60.0)));
     option("device", args.device.device.clone());
     option("device-limits", path(&args.device.device_limits));
     words.extend(args.device.validate.then(|| "--validate".into()));
@@ -194,7 +197,25 @@ fn wanted(args: &Bench, suites: Vec<Suite>, progress: &dyn Progress) -> Result<S
         device,
         validated: args.device.validate,
         cache: cache_folder().filter(|_| !args.no_cache).map(|folder| folder.join("truth")),
+        limit: args.minutes,
     })
+}
+
+/// The file itself; of a folder, its JSON files in the order of their names.
+fn files_of(path: &Path) -> Result<Vec<PathBuf>> {
+    if !path.is_dir() {
+        return Ok(vec![path.to_owned()]);
+    }
+    let entries = std::fs::read_dir(path).and_then(|entries| entries.collect::<std::io::Result<Vec<_>>>());
+    let entries = entries.map_err(Error::io(path, "cannot list"))?;
+    let mut files: Vec<PathBuf> = entries.iter().map(|entry| entry.path()).collect();
+    files.retain(|file| file.extension().is_some_and(|extension| extension == "json"));
+    files.sort();
+    if files.is_empty() {
+        let cause = "has no results, which are JSON files: name the folder that tools/measure wrote";
+        return Err(Error::input(path.display().to_string(), cause));
+    }
+    Ok(files)
 }
 
 /// Reads the results of an earlier call.

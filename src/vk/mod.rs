@@ -40,7 +40,10 @@ mod render_pass;
 mod requirements;
 mod set_layout;
 mod shader_stage;
-#[cfg_attr(not(feature = "window"), allow(dead_code, reason = "some are for windows alone"))]
+#[cfg_attr(
+    not(all(feature = "bench", feature = "window")),
+    allow(dead_code, reason = "some are for benchmarks or windows alone")
+)]
 pub(crate) mod shaders;
 #[cfg(feature = "window")]
 mod slot;

@@ -65,6 +65,9 @@ fn invalid_arguments_of_bench_are_refused_first() {
     assert!(refused("--from later.json", 1).contains("format 99"));
     assert!(refused("--from later.json --report file", 2).contains("is no folder"));
     assert!(refused("--suite slow", 2).contains("slow"));
+    for minutes in ["0", "-1", "NaN", "inf", "1e300", "soon"] {
+        assert!(refused(&format!("--minutes={minutes}"), 2).contains(minutes));
+    }
     assert!(refused("--points 100", 2).contains("INPUT"));
     assert!(refused("scene:none", 2).contains("no such scene"));
     assert!(refused("scene:torus?points=5", 2).contains("leave out `points`"));
@@ -112,4 +115,67 @@ fn the_command_beside_a_picture_renders_it_again() {
         }
         assert_eq!(commands.next(), None);
     }
+}
+
+#[test]
+fn a_limit_of_time_leaves_runs_out() {
+    let Some(program) = Program::with_device("a_limit_of_time_leaves_runs_out") else { return };
+    let arguments = "scene:torus --points 1000,3000000 --size 64x64 --minutes 0.001";
+    let run = program.run(&format!("bench {arguments} --json a.json --report page"));
+    let results = json(&program, "a.json");
+    let session = &results["sessions"][0];
+    assert_eq!(session["provenance"]["command"], format!("surfel bench {arguments}"));
+    let missing = session["missing"].as_array().unwrap();
+    assert!(missing.iter().any(|missing| missing["points"] == 3_000_000), "{missing:?}");
+    assert!(session["runs"].as_array().unwrap().iter().all(|run| run["points"] == 1000));
+    assert!(run.text().contains("runs were not measured"), "{}", run.text());
+    let page = std::fs::read_to_string(program.path("page/index.html")).unwrap();
+    assert!(page.contains("runs were not measured"));
+}
+
+#[test]
+fn folders_of_results_are_shown_side_by_side() {
+    let program = Program::new();
+    let run = r#"{"suite":"full","experiment":"budget","scene":"scene:torus","points":1000,"size":[64,64],
+        "implementation":{"method":"perspective-ewa","variant":""},"settings":{"cutoff":2.5,"lowpass":1.0,"widen":"all","epsilon":1.0,
+        "cull":"none","shading":"lit"},"refused":null,"error":null,"float64_error":null,"memory":{"scene":0,"splats":0,"targets":0},
+        "overlap":null,"images":null,"time":{"clock":"gpu","frames":9,"warmup":1,"wall":WORK,"cpu":WORK,"device":WORK,"passes":[],
+        "others":null,"baseline_ratio":null}}"#;
+    let results = |gpu: &str, ms: f64, suite: &str| {
+        let work = format!(r#"{{"median":{ms},"min":{ms},"max":{ms}}}"#);
+        let session = format!(
+            r#"{{"provenance":{{"version":"0.1.0","commit":"0123456789","code":"another","date":"2026-01-02T03:04:05Z","seconds":1.0,
+            "command":"surfel bench","suites":["{suite}"],"host":{{"cpu":"A","cores":2,"memory":1,"system":"B"}},
+            "device":{{"name":"{gpu}","driver":"of {gpu}","kind":"discrete GPU","validated":false}}}},
+            "runs":[{}],"sweeps":[],"images":[]}}"#,
+            run.replace("WORK", &work)
+        );
+        format!(r#"{{"format":4,"sessions":[{session}]}}"#)
+    };
+    for (folder, gpu, ms) in [("first", "GPU-1", 8.0), ("second", "GPU-2", 2.0)] {
+        std::fs::create_dir(program.path(folder)).unwrap();
+        program.write(&format!("{folder}/full.json"), results(gpu, ms, "full"));
+        program.write(&format!("{folder}/scaling.json"), results(gpu, 2.0 * ms, "scaling"));
+        program.write(&format!("{folder}/machine.txt"), "no results");
+    }
+    let run = program.run("bench --from first --from second --json all.json --report page");
+    assert!(run.text().contains("GPU-1") && run.text().contains("GPU-2"), "{}", run.text());
+    // In the order of the names: the run that both files of a folder have is that of the first.
+    let suites = json(&program, "all.json");
+    let suites: Vec<_> = suites["sessions"].as_array().unwrap().iter().collect();
+    let suites: Vec<_> =
+        suites.iter().map(|session| session["provenance"]["suites"][0].as_str().unwrap()).collect();
+    assert_eq!(suites, ["full", "scaling", "full", "scaling"]);
+    let page = std::fs::read_to_string(program.path("page/index.html")).unwrap();
+    let machines = page.split("<section id=\"machines\">").nth(1).unwrap();
+    assert!(
+        machines.contains("of GPU-1") && machines.contains("of GPU-2") && machines.contains("4×"),
+        "{machines}"
+    );
+
+    std::fs::create_dir(program.path("none")).unwrap();
+    let error = program.run("bench --from none").error(1).to_owned();
+    assert!(error.contains("none") && error.contains("tools/measure"), "{error}");
+    program.write("first/other.json", "{}");
+    assert!(program.run("bench --from first").error(1).contains("other.json: missing field"));
 }

@@ -5,8 +5,8 @@ use base64::prelude::{BASE64_STANDARD, Engine as _};
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
-use std::time::Duration;
-use surfel::bench::Suite;
+use std::time::{Duration, Instant};
+use surfel::bench::ceilings::{self, Sizes};
 use surfel::bench::engine::Engine;
 use surfel::bench::place::{Move, Place};
 use surfel::bench::plan::{Measurements, Plan};
@@ -15,12 +15,14 @@ use surfel::bench::runner::{Options, Runner};
 use surfel::bench::stopwatch::Effort;
 use surfel::bench::subject::Subject;
 use surfel::bench::suites::UserInputs;
+use surfel::bench::{SessionOptions, Suite};
+use surfel::frame::times::Interval;
 use surfel::settings::methods::Method;
 use surfel::settings::{Settings, Shading};
 use surfel::verify::truth;
 use surfel::vk::DeviceLimits;
 
-const EFFORT: Effort = Effort { warmup: 1, least: 3, most: 3, budget: Duration::ZERO };
+const EFFORT: Effort = Effort { warmup: 1, least: 3, most: 3, budget: Duration::ZERO, until: None };
 const TRUTH: truth::Options = truth::Options {
     filter: truth::Filter::Gaussian { variance: 1.0 },
     error: 1.0 / 256.0,
@@ -360,4 +362,86 @@ fn inputs_without_surfels_are_refused() {
             .is_some_and(|why| why.contains("no such scene"))
     );
     assert!(Subject::scene("scene:torus?points=5").is_err());
+}
+
+#[test]
+fn rates_of_a_device_are_of_its_operations() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let sizes = Sizes { copy: 8 << 20, words: 1 << 16, side: 256 };
+    let double = Sizes { copy: 16 << 20, words: 1 << 17, side: 512 };
+    let [once, twice] = [sizes, double].map(|sizes| ceilings::measure(&device, &sizes).unwrap());
+    assert_eq!(once.wide_atomics.is_some(), device.capabilities().int64_atomics);
+    for rates in [&once, &twice] {
+        for rate in [rates.copy, rates.atomics, rates.fill].into_iter().chain(rates.wide_atomics) {
+            let Interval { median, low, high } = rate.per_second;
+            assert!(rate.operations > 0 && 0.0 < low && low <= median && median <= high && high.is_finite());
+        }
+    }
+    // Rates, not times: they are about the same for other amounts, under any load.
+    assert_eq!([once.copy.memory, twice.copy.memory], [16 << 20, 32 << 20]);
+    assert_eq!([once.fill.memory, twice.fill.memory], [1 << 20, 4 << 20]);
+    for (a, b) in [(once.copy, twice.copy), (once.atomics, twice.atomics), (once.fill, twice.fill)] {
+        let quotient = a.per_second.median / b.per_second.median;
+        assert!((0.1..10.0).contains(&quotient), "{a:?} {b:?}");
+    }
+    // Memory that a device may not have: a message, no panic.
+    let beyond = Sizes { copy: 1 << 60, ..sizes };
+    assert!(ceilings::measure(&device, &beyond).is_err());
+    assert_silent(&device);
+}
+
+#[test]
+fn passes_of_a_run_have_their_least_work() {
+    let Some(mut runner) = runner(Vec::new()) else { return };
+    let timed =
+        |points, side| Plan { measurements: Measurements::TIME, ..plan("scene:sphere", points, side) };
+    let mut work = |plan: &Plan, pass: &str| {
+        let run = runner.run(plan).unwrap();
+        run.work.iter().find(|work| work.name == pass).unwrap_or_else(|| panic!("{:?}", run.work)).clone()
+    };
+    // Streams with colours, a splat, its box and a row of attributes: all surfels are drawn.
+    let footprint = work(&timed(10_000, 64), "footprint");
+    assert_eq!((footprint.bytes, footprint.pixels), (10_000 * (40 + 64 + 16 + 16), 0));
+    let surface = work(&timed(10_000, 64), "surface");
+    assert_eq!((surface.bytes, surface.pixels), (10_000 * (64 + 16 + 16) + 64 * 64 * 16, 64 * 64));
+    // Back faces are culled: those beyond the horizon, and points are one atomic each.
+    let points = Settings { shading: Shading::Colour, ..Method::named("pull-push").unwrap().settings() };
+    let project = work(&Plan { settings: points, ..timed(10_000, 64) }, "project");
+    assert!((3_000..5_000).contains(&project.atomics), "{project:?}");
+    assert_eq!(project.bytes, project.atomics * 24 + 64 * 64 * 8);
+    // The CPU baseline declares nothing.
+    let baseline =
+        Plan { engine: Engine::Baseline(surfel::verify::baseline::Kind::Splats), ..timed(1000, 64) };
+    assert!(runner.run(&baseline).unwrap().work.is_empty());
+}
+
+#[test]
+fn a_session_ends_in_time_and_lists_what_is_missing() {
+    let limited = |suites, limit| {
+        let options = SessionOptions {
+            suites,
+            inputs: UserInputs::default(),
+            device: None,
+            rasterizer: Default::default(),
+            validated: false,
+            cache: None,
+            limit,
+            command: String::new(),
+        };
+        let start = Instant::now();
+        let (session, _) = surfel::bench::measure(&options, &());
+        (session, start.elapsed())
+    };
+    let all = Suite::Scaling.plans(&UserInputs::default()).len();
+    let (session, took) = limited(vec![Suite::Scaling, Suite::Quick], Some(Duration::from_millis(200)));
+    let of = |suite: &str| {
+        let missing = session.missing.iter().filter(|missing| missing.suite == suite);
+        missing.map(|missing| missing.count).sum::<usize>()
+    };
+    let measured = session.runs.iter().filter(|run| run.suite == "scaling").count();
+    assert!(measured > 0 && of("scaling") > 0, "{measured} in {took:?}");
+    assert_eq!(measured + of("scaling"), all);
+    // Ten million points alone take longer.
+    assert!(session.missing.iter().any(|missing| missing.points == 10_000_000));
+    assert!(took < Duration::from_secs(20), "{took:?}");
 }

@@ -50,7 +50,7 @@ fn work(steps: u32, sleep: u64) -> Work {
 
 /// Times of engines that take turns for half a second.
 fn times<const N: usize>(mut all: [Work; N]) -> [Time; N] {
-    let effort = Effort { warmup: 1, least: 31, most: 1000, budget: Duration::from_millis(500) };
+    let effort = Effort { warmup: 1, least: 31, most: 1000, budget: Duration::from_millis(500), until: None };
     let camera =
         Camera::look_at(DVec3::Z, DVec3::ZERO, DVec3::Y, 0.8, 1.0, 0.1).expect("it looks at something");
     let settings = Settings::default();

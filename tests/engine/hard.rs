@@ -89,7 +89,7 @@ fn every_case_agrees_or_says_why_not() {
     let few = if_whole(usize::MAX, 2);
     let sweeps = [(angles, few, if_whole(5, 2)), (rest, few, 2), (listed, usize::MAX, 2)];
     let sweeps = sweeps.map(|(only, values, others)| {
-        let options = Options { only, others, values };
+        let options = Options { only, others, values, until: None };
         run(&device, &options, &()).unwrap()
     });
     let sweeps = sweeps.concat();
@@ -127,7 +127,8 @@ fn refusals_of_a_device_are_reported() {
     let Some(device) = device(limits) else { return };
     let unknown = Options { only: vec!["sizes".into()], ..Default::default() };
     assert!(run(&device, &unknown, &()).unwrap_err().to_string().contains("sizes: give one of grazing, "));
-    let options = Options { values: 2, others: 2, only: vec!["accumulator".into(), "size".into()] };
+    let options =
+        Options { values: 2, others: 2, only: vec!["accumulator".into(), "size".into()], until: None };
     let sweeps = run(&device, &options, &()).unwrap();
     let [accumulator, size] = &sweeps[..] else { panic!("{} sweeps", sweeps.len()) };
     let reasons = |sweep: &Sweep| {

@@ -14,7 +14,7 @@ fn check(name: &str) {
     let effect = Effect::named(name).unwrap();
     let Some(device) = device(DeviceLimits::default()) else { return };
     let truth = truth::Options { error: 1.0 / 256.0, most_samples: 256, ..Default::default() };
-    let effort = Effort { warmup: 1, least: 1, most: 1, budget: Duration::ZERO };
+    let effort = Effort { warmup: 1, least: 1, most: 1, budget: Duration::ZERO, until: None };
     let options = Options { device: Some(device.clone()), cache: None, truth, effort, ..Default::default() };
     let mut runner = Runner::new(options, Vec::new());
     let runs: Vec<Run> = effect.plans().iter().map(|plan| runner.run(plan).unwrap()).collect();

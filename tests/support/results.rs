@@ -29,6 +29,8 @@ pub fn session() -> Session {
         runs,
         sweeps: vec![grazing(), offset(), layers()],
         images: vec![images(), images()],
+        ceilings: None,
+        missing: Vec::new(),
     }
 }
 
@@ -115,6 +117,7 @@ pub fn run(experiment: Experiment, scene: &str, points: u64, ms: f64, rmse: f64)
             normal: 6e-5,
             depth: 1e-6,
         }),
+        work: Vec::new(),
         memory: Memory { scene: 28 * points, splats: 64 * points, targets: 512 * 512 * 48 },
         overlap: Some(7.5),
         blended: None,

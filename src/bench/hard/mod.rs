@@ -18,18 +18,20 @@ mod sizes;
 
 pub use compare::compare;
 
-use super::record::{BEYOND_FLOAT32, Implementation, Sweep, SweepPoint};
+use super::group::distinct;
+use super::record::{BEYOND_FLOAT32, Implementation, Missing, Sweep, SweepPoint};
+use super::suites::Suite;
 use crate::Progress;
 use crate::error::{Error, Result};
 use crate::frame::{RenderOptions, Renderer, SplatCounts};
 use crate::scene::Scene;
-use crate::settings::Settings;
 use crate::settings::methods::Method;
-use crate::settings::{Outputs, Precision, Rasterizer};
+use crate::settings::{Choice, Outputs, Precision, Rasterizer, Settings};
 use crate::verify::reference::{Counts, Expected, Tolerance};
 use crate::vk::Device;
 use case::{Case, View};
 use std::sync::Arc;
+use std::time::Instant;
 
 /// Extent of the sweeps.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -40,12 +42,14 @@ pub struct Options {
     pub others: usize,
     /// Names of the cases; all if empty.
     pub only: Vec<String>,
+    /// Time after which no further value is measured.
+    pub until: Option<Instant>,
 }
 
 impl Default for Options {
     /// Every value of every case.
     fn default() -> Self {
-        Self { values: usize::MAX, others: usize::MAX, only: Vec::new() }
+        Self { values: usize::MAX, others: usize::MAX, only: Vec::new(), until: None }
     }
 }
 
@@ -61,36 +65,72 @@ pub fn names() -> Vec<&'static str> {
     cases().iter().map(|case| case.name).collect()
 }
 
-/// Sweeps the cases on `device`.
+impl Options {
+    /// The chosen cases.
+    fn cases(&self) -> Vec<Case> {
+        let is_chosen = |case: &Case| self.only.is_empty() || self.only.iter().any(|name| name == case.name);
+        cases().into_iter().filter(is_chosen).collect()
+    }
+
+    /// The values of a case for the method of this index.
+    fn values(&self, case: &Case, method: usize) -> Vec<f64> {
+        match method {
+            0 => case.some(self.values),
+            _ => case.some(self.values.min(self.others)),
+        }
+    }
+
+    /// Number of values of a case for all methods.
+    fn count(&self, case: &Case) -> usize {
+        (0..Method::SPLATTING.len()).map(|method| self.values(case, method).len()).sum()
+    }
+}
+
+/// Sweeps the cases on `device`: all by the first method, then by the others, until the time is over.
 ///
 /// # Errors
 /// [`Error::Usage`] if a name is unknown, and errors of the device itself. A point that the device refuses becomes a
 /// [`SweepPoint::refused`].
 pub fn run(device: &Arc<Device>, options: &Options, progress: &dyn Progress) -> Result<Vec<Sweep>> {
-    let mut cases = cases();
     if let Some(name) = options.only.iter().find(|name| !names().contains(&name.as_str())) {
         let all = names().join(", ");
         return Err(Error::Usage(format!("there is no hard case named {name}: give one of {all}")));
     }
-    cases.retain(|case| options.only.is_empty() || options.only.iter().any(|name| name == case.name));
-    let values = |case: &Case, method: usize| match method {
-        0 => case.some(options.values),
-        _ => case.some(options.values.min(options.others)),
-    };
-    let places = || 0..Method::SPLATTING.len();
-    let count = |case: &Case| places().map(|method| values(case, method).len() as u64).sum::<u64>();
-    let total = cases.iter().map(count).sum();
+    let mut cases: Vec<(Case, Vec<SweepPoint>)> =
+        options.cases().into_iter().map(|case| (case, Vec::new())).collect();
+    let total = cases.iter().map(|(case, _)| options.count(case) as u64).sum();
     let mut sweeper = Sweeper { device: device.clone(), renderers: Vec::new(), progress, done: 0, total };
-    let sweep = |case: &Case| {
-        let mut points = Vec::new();
-        for method in places() {
-            points.extend(sweeper.sweep(case, method, values(case, method))?);
+    for method in 0..Method::SPLATTING.len() {
+        for (case, points) in &mut cases {
+            points.extend(sweeper.sweep(case, method, options)?);
         }
-        Ok(case.sweep(points))
-    };
-    let sweeps = cases.iter().map(sweep).collect();
+    }
+    sweeper.done = total;
     sweeper.report_progress();
-    sweeps
+    let measured = cases.into_iter().filter(|(_, points)| !points.is_empty());
+    Ok(measured.map(|(case, points)| case.sweep(points)).collect())
+}
+
+/// Values that are not among the sweeps of [`run`] because its time was over.
+pub fn missing(options: &Options, sweeps: &[Sweep]) -> Vec<Missing> {
+    let of_case = |case: Case| {
+        let points = sweeps.iter().filter(|sweep| sweep.name == case.name).flat_map(|sweep| &sweep.points);
+        // Variants share their values.
+        let done = distinct(points.map(|point| (point.value.to_bits(), &point.implementation.method)));
+        let count = options.count(&case).saturating_sub(done.len());
+        let (experiment, paper_item, scene) = (case.name.into(), String::new(), String::new());
+        let suite = Suite::Hard.name().into();
+        (count > 0).then_some(Missing {
+            suite,
+            experiment,
+            paper_item,
+            scene,
+            points: 0,
+            size: [0; 2],
+            count,
+        })
+    };
+    options.cases().into_iter().filter_map(of_case).collect()
 }
 
 /// A variant, in the order of the results.
@@ -145,10 +185,13 @@ impl Sweeper<'_> {
         self.progress.at("hard cases", self.done, self.total);
     }
 
-    /// Sweeps a case by the method of this index, variant by variant.
-    fn sweep(&mut self, case: &Case, method: usize, values: Vec<f64>) -> Result<Vec<SweepPoint>> {
+    /// Sweeps a case by the method of this index, variant by variant, until the time is over.
+    fn sweep(&mut self, case: &Case, method: usize, options: &Options) -> Result<Vec<SweepPoint>> {
         let mut points = Vec::new();
-        for value in values {
+        for value in options.values(case, method) {
+            if options.until.is_some_and(|until| Instant::now() >= until) {
+                break;
+            }
             self.report_progress();
             points.extend(self.points(case, &Method::SPLATTING[method], method == 0, value)?);
             self.done += 1;

@@ -1,5 +1,6 @@
 //! Results of a run: what was rendered, its times, errors and memory.
 
+use super::PassWork;
 use crate::frame::times::Statistics;
 use crate::settings::methods::Method;
 use crate::settings::splatting::Splatting;
@@ -54,6 +55,9 @@ pub struct Run {
     pub error: Option<Error>,
     /// Error against the float64 reference; none if it was not compared.
     pub float64_error: Option<Float64Error>,
+    /// Least work of the passes; empty for the CPU baseline, and for runs that were not timed.
+    #[serde(default)]
+    pub work: Vec<PassWork>,
     /// Memory of the device, or of the host for the CPU baseline.
     pub memory: Memory,
     /// Discs over a point of the surface, on average, before any filter widens them; none if unknown.

@@ -1,47 +1,157 @@
-//! Several sessions side by side, by times relative to the CPU baseline: the only ones that can be compared.
+//! Machines side by side: how many times as fast each is as the first.
 
 use super::page::titled;
 use crate::bench::format;
-use crate::bench::group::distinct;
-use crate::bench::record::{Experiment, Results, Run, Session};
+use crate::bench::group::{distinct, grouped};
+use crate::bench::machines::{Machine, Row, mean, rows};
+use crate::bench::record::{Ceilings, Rate, Results, Run};
+use crate::frame::times::{Interval, Statistics};
+use crate::settings::Choice;
 use maud::{Markup, html};
 
-/// Scene, size, points, implementation and settings.
-type Key<'a> = (&'a str, [u32; 2], u64, String, String);
-
-/// A table with a column per session; none for a single session, or if sessions have no run in common.
+/// The machines, their rates, the mean speed of each method, and the speed of each run; none unless machines have runs in common.
 pub fn section(results: &Results) -> Option<Markup> {
-    let sessions = &results.sessions;
-    let mut rows = distinct(sessions.iter().flat_map(|session| runs(session).map(key)));
-    rows.retain(|key| sessions.iter().filter(|session| ratio(session, key).is_some()).count() > 1);
-    (!rows.is_empty()).then(|| html! {
-        p { "Median times relative to the CPU baseline on the same machine." }
-        div.scroll { table {
-            thead { tr {
-                th scope="col" { "scene" } th.number scope="col" { "points" } th scope="col" { "implementation" }
-                @for session in sessions { th.number scope="col" { (format::machine(session)) } }
-            } }
-            tbody { @for row in &rows { tr {
-                @let (scene, size, points, implementation, settings) = row;
-                td { (titled(scene, *size)) } td.number { (format::count(*points)) }
-                td { (implementation) " " (settings) }
-                @for session in sessions {
-                    td.number { (ratio(session, row).map(format::baseline_ratio).unwrap_or_else(|| "–".into())) }
-                }
-            } } }
-        } }
+    let machines = Machine::all(results);
+    let rows = rows(&machines);
+    (!rows.is_empty()).then(|| {
+        html! {
+            (legend(&machines))
+            (rates(&machines))
+            (means(&machines, &rows))
+            (all(&machines, &rows))
+        }
     })
 }
 
-fn runs(session: &Session) -> impl Iterator<Item = &Run> {
-    session.runs.iter().filter(|run| matches!(run.experiment, Experiment::Baseline | Experiment::Budget))
+/// Letter of a machine; a number beyond Z.
+fn letter(machine: usize) -> String {
+    let letter = ('A'..='Z').nth(machine);
+    letter.map_or_else(|| (machine + 1).to_string(), String::from)
 }
 
-fn key(run: &Run) -> Key<'_> {
-    let settings = format::options(run);
-    (&run.scene, run.size, run.points, run.implementation.label(), settings)
+/// Device, driver, host and program of each machine.
+fn legend(machines: &[Machine<'_>]) -> Markup {
+    html! {
+        div.scroll { table {
+            thead { tr {
+                th scope="col" {} th scope="col" { "device" } th scope="col" { "driver" } th scope="col" { "processor" }
+                th scope="col" { "program" }
+            } }
+            tbody { @for (number, machine) in machines.iter().enumerate() { tr {
+                @let provenance = &machine.first().provenance;
+                th scope="row" { (letter(number)) }
+                @match &provenance.device {
+                    Some(gpu) => { td.wide { (gpu.name) } td.wide { (gpu.driver) } }
+                    None => { td { "none" } td {} }
+                }
+                td.wide { (provenance.host.cpu) ", " (provenance.host.cores) " cores" }
+                td { "commit " code { (format::commit(&provenance.commit)) } ", " (format::day(provenance)) }
+            } } }
+        } }
+    }
 }
 
-fn ratio(session: &Session, row: &Key<'_>) -> Option<f64> {
-    runs(session).filter(|run| key(run) == *row).find_map(|run| run.time.as_ref()?.baseline_ratio)
+/// The rates of the devices that were measured.
+fn rates(machines: &[Machine<'_>]) -> Markup {
+    let measured = |machine: &Machine<'_>| machine.sessions.iter().find_map(|session| session.ceilings);
+    let all: Vec<Option<Ceilings>> = machines.iter().map(measured).collect();
+    let row = |name: &str, unit: &str, of: fn(&Ceilings) -> Option<Rate>| {
+        html! { tr {
+            th scope="row" { (name) }
+            @for ceilings in &all { td.number { (ceilings.as_ref().and_then(of).map(|rate| format::rate(&rate, unit)).unwrap_or("–".into())) } }
+        } }
+    };
+    html! { @if all.iter().flatten().count() > 1 {
+        h3 { "Rates of the devices" }
+        div.scroll { table {
+            thead { tr { th scope="col" {} @for number in 0..machines.len() { th.number scope="col" { (letter(number)) } } } }
+            tbody {
+                (row("copy bandwidth", "B/s", |ceilings| Some(ceilings.copy)))
+                (row("atomics, 32 bits", "/s", |ceilings| Some(ceilings.atomics)))
+                (row("atomics, 64 bits", "/s", |ceilings| ceilings.wide_atomics))
+                (row("fill rate", "px/s", |ceilings| Some(ceilings.fill)))
+            }
+        } }
+    } }
+}
+
+/// Mean speed of each method over the runs that a machine and the first have in common.
+fn means(machines: &[Machine<'_>], rows: &[Row<'_>]) -> Markup {
+    let methods = distinct(rows.iter().map(|row| row.run.implementation.method.as_str()));
+    html! {
+        h3 { "Speed relative to machine A" }
+        p {
+            "How many times as fast as A: geometric mean over the runs in common, with the least and the greatest. Times are the work of a frame, "
+            "which is GPU time or processor time, and wall time where the machines differ in that."
+        }
+        div.scroll { table {
+            thead { tr {
+                th scope="col" { "method" }
+                @for number in 1..machines.len() { th.number scope="col" { (letter(number)) } th.number scope="col" { "runs" } }
+            } }
+            tbody { @for method in &methods { tr {
+                th scope="row" { (method) }
+                @for number in 1..machines.len() {
+                    @let own = rows.iter().filter(|row| row.run.implementation.method == **method);
+                    @match mean(own.filter_map(|row| row.speed(number))) {
+                        Some((count, speed)) => { td.number { (interval(&speed)) } td.number { (count) } }
+                        None => { td.number { "–" } td.number { "0" } }
+                    }
+                }
+            } } }
+        } }
+    }
+}
+
+/// Every run in common, experiment by experiment.
+fn all(machines: &[Machine<'_>], rows: &[Row<'_>]) -> Markup {
+    let experiments = distinct(rows.iter().map(|row| (&row.run.suite, row.run.experiment)));
+    html! {
+        p {
+            "Each run: time of a frame in ms with its 95 % interval, and how many times as fast as A, from the least to the greatest quotient of "
+            "both intervals."
+        }
+        @for (suite, experiment) in &experiments {
+            @let own: Vec<&Row> = rows.iter().filter(|row| (&row.run.suite, row.run.experiment) == (*suite, *experiment)).collect();
+            details {
+                summary { (suite) ", " (experiment.name()) ": " (own.len()) " runs" }
+                div.scroll { (table(machines, &own)) }
+            }
+        }
+    }
+}
+
+fn table(machines: &[Machine<'_>], rows: &[&Row<'_>]) -> Markup {
+    let runs: Vec<&Run> = rows.iter().map(|row| row.run).collect();
+    let groups = grouped(runs, |run| (&run.paper_item, &run.scene, run.size));
+    html! { table.passes {
+        thead { tr {
+            th.number scope="col" { "points" } th.number scope="col" { "overlap" } th scope="col" { "implementation" } th scope="col" { "options" }
+            @for number in 0..machines.len() { th.number scope="col" { (letter(number)) ", ms" } }
+            @for number in 1..machines.len() { th.number scope="col" { (letter(number)) " / A" } }
+        } }
+        @for ((item, scene, size), runs) in &groups { tbody {
+            tr.group { th colspan=(3 + 2 * machines.len()) scope="rowgroup" { (item) @if !item.is_empty() { ": " } (titled(scene, *size)) } }
+            @for row in rows.iter().filter(|row| runs.iter().any(|run| std::ptr::eq(*run, row.run))) { tr {
+                td.number { (format::count(row.run.points)) }
+                td.number { (row.run.overlap.map(|overlap| format::significant(overlap, 2)).unwrap_or_default()) }
+                td { (row.run.implementation.label()) } td { (format::options_among(row.run, runs)) }
+                @for number in 0..machines.len() {
+                    td.number { @if let Some(time) = row.time(number) { (spread(&time)) } @else { "–" } }
+                }
+                @for number in 1..machines.len() {
+                    td.number { @if let Some(speed) = row.speed(number) { (interval(&speed)) } @else { "–" } }
+                }
+            } }
+        } }
+    } }
+}
+
+fn spread(time: &Statistics) -> Markup {
+    let [low, high] = time.interval.unwrap_or([time.min, time.max]);
+    html! { (format::ms(time.median)) small { " " (format::ms(low)) "–" (format::ms(high)) } }
+}
+
+fn interval(speed: &Interval) -> Markup {
+    html! { (format::baseline_ratio(speed.median)) small { " " (format::significant(speed.low, 2)) "–" (format::significant(speed.high, 2)) } }
 }

@@ -3,6 +3,7 @@
 mod aliasing;
 mod baseline;
 mod budget;
+mod ceilings;
 mod convergence;
 mod effects;
 mod glossary;

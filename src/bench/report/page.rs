@@ -8,6 +8,7 @@ use super::{
 use crate::bench::command;
 use crate::bench::format;
 use crate::bench::group::distinct;
+use crate::bench::machines::Machine;
 use crate::bench::place;
 use crate::bench::record::{Implementation, Results, Run, Session, View};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -87,11 +88,14 @@ impl<'a> Page<'a> {
         html! {
             h1 { "surfel: speed against error" }
             ul.sessions {
-                @for session in &self.results.sessions {
+                @for machine in Machine::all(self.results) {
+                    @let session = machine.first();
+                    @let suites = distinct(machine.sessions.iter().flat_map(|session| &session.provenance.suites));
                     li {
                         strong { (format::machine(session)) } ", "
-                        (format::day(&session.provenance)) ", suites " (session.provenance.suites.join(", "))
+                        (format::day(&session.provenance)) ", suites " (suites.into_iter().cloned().collect::<Vec<_>>().join(", "))
                         ", commit " code { (format::commit(&session.provenance.commit)) }
+                        (missing(&machine))
                     }
                 }
             }
@@ -181,6 +185,18 @@ pub fn document(title: &str, body: &Markup) -> String {
         }
     };
     page.into_string()
+}
+
+/// What the time of a machine's sessions did not suffice for.
+fn missing(machine: &Machine<'_>) -> Markup {
+    let of = |session: &Session| {
+        let [count, all] = format::missing_counts(session)?;
+        Some(format!("{} {count} of {all} runs", session.provenance.suites.join(" and ")))
+    };
+    let all: Vec<String> = machine.sessions.iter().filter_map(|session| of(session)).collect();
+    html! { @if !all.is_empty() {
+        p.stale { strong { "Not measured, as the time was over: " } (all.join(", ")) ". See " a href="#provenance" { "Provenance" } "." }
+    } }
 }
 
 /// Letters, digits and hyphens only: safe in file names and ids.

@@ -13,6 +13,7 @@ use std::io;
 pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     Ok(Some(html! {
         (origin(session))
+        (missing(session))
         (passes(session))
     }))
 }
@@ -35,6 +36,26 @@ fn origin(session: &Session) -> Markup {
             dt { "truth" } dd { (truth(&session.runs)) }
         }
     }
+}
+
+/// What the time did not suffice for.
+fn missing(session: &Session) -> Markup {
+    html! { @if !session.missing.is_empty() {
+        details {
+            summary { (format::missing(session).unwrap_or_default()) }
+            div.scroll { table {
+                thead { tr {
+                    th scope="col" { "suite" } th scope="col" { "experiment" } th scope="col" { "scene" } th.number scope="col" { "points" }
+                    th scope="col" { "size" } th.number scope="col" { "runs" }
+                } }
+                tbody { @for missing in &session.missing { tr {
+                    td { (missing.suite) } td { (missing.experiment) " " (missing.paper_item) } td { (format::scene(&missing.scene)) }
+                    td.number { @if missing.points > 0 { (format::count(missing.points)) } }
+                    td { @if missing.points > 0 { (format::size(missing.size)) } } td.number { (missing.count) }
+                } } }
+            } }
+        }
+    } }
 }
 
 /// Numbers of timed and of warm-up frames over all runs.

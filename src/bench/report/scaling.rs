@@ -1,5 +1,6 @@
 //! Time against the number of points, the picture's size, and the number of discs over a point of the surface.
 
+use super::ceilings;
 use super::page::Page;
 use super::plot::{Line, Plot, Scale, Style};
 use super::pull_push;
@@ -62,10 +63,12 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
         }
     }
     plots.extend(pull_push::plots(page, session)?);
+    let shares = ceilings::content(page, session)?;
     Ok((!plots.is_empty()).then(|| {
         html! {
             p { "Straight lines are power laws; proportional growth has exponent 1." }
             div.plots { @for plot in &plots { (plot) } }
+            (shares)
         }
     }))
 }

@@ -1,10 +1,11 @@
 //! Options of `surfel bench`.
 
 use super::DeviceArgs;
-use crate::cli::values::{method, one_of, size};
+use crate::cli::values::{method, minutes, one_of, size};
 use clap::Args;
 use std::ffi::OsString;
 use std::path::PathBuf;
+use std::time::Duration;
 use surfel::bench::Suite;
 use surfel::settings::methods::Method;
 
@@ -32,8 +33,11 @@ pub struct Bench {
     /// Folder of scans that quick, the first one by name only, and full measure beside the built-in scenes
     #[arg(long, value_name = "DIR")]
     pub scans: Option<PathBuf>,
-    /// Adds the results that --json of an earlier call wrote, on this computer or another
-    #[arg(long, value_name = "FILE")]
+    /// Time for all measurements, minutes: leaves out runs of the most points and pixels that it does not suffice for [default: no limit]
+    #[arg(long, value_name = "N", value_parser = minutes)]
+    pub minutes: Option<Duration>,
+    /// Adds the results that --json of earlier calls wrote, on this computer or another; of a folder, those of all its JSON files
+    #[arg(long, value_name = "PATH")]
     pub from: Vec<PathBuf>,
     /// Writes a page with plots and pictures, and the plots as SVG, to a folder
     #[arg(long, value_name = "DIR")]

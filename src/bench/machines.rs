@@ -1,0 +1,112 @@
+//! Times of the same runs on several machines.
+
+use super::format;
+use super::record::{Results, Run, Session, Time};
+use crate::frame::times::{Interval, Statistics};
+
+/// A machine, with its sessions by one version of the program.
+pub struct Machine<'a> {
+    /// In the order of the results.
+    pub sessions: Vec<&'a Session>,
+}
+
+/// A run with its times on each machine.
+pub struct Row<'a> {
+    /// The run on the first of the machines that have it.
+    pub run: &'a Run,
+    /// Its times, machine by machine.
+    pub times: Vec<Option<&'a Time>>,
+}
+
+impl<'a> Machine<'a> {
+    /// The machines of some results: those with another processor, memory, device, driver or program are different.
+    pub fn all(results: &'a Results) -> Vec<Self> {
+        let mut machines: Vec<Self> = Vec::new();
+        for session in &results.sessions {
+            match machines.iter_mut().find(|known| is_same(known.sessions[0], session)) {
+                Some(known) => known.sessions.push(session),
+                None => machines.push(Self { sessions: vec![session] }),
+            }
+        }
+        machines
+    }
+
+    /// Its first session: all have its device, driver and host.
+    pub fn first(&self) -> &'a Session {
+        self.sessions[0]
+    }
+
+    /// Its timed runs with their times.
+    fn timed(&self) -> impl Iterator<Item = (&'a Run, &'a Time)> + use<'a> {
+        let all: Vec<&'a Run> = self.sessions.iter().flat_map(|session| &session.runs).collect();
+        all.into_iter().filter(|run| run.ms().is_some()).filter_map(|run| Some((run, run.time.as_ref()?)))
+    }
+}
+
+fn is_same(a: &Session, b: &Session) -> bool {
+    let key = |session: &Session| {
+        let provenance = &session.provenance;
+        (provenance.host.clone(), provenance.device.clone(), provenance.code.clone())
+    };
+    key(a) == key(b)
+}
+
+/// What makes runs comparable: the suite may differ.
+fn key(run: &Run) -> impl PartialEq + use<> {
+    let overlap = run.overlap.map(|overlap| format::significant(overlap, 3));
+    let what = (run.experiment, run.paper_item.clone(), run.scene.clone(), run.points, run.size, overlap);
+    (what, run.implementation.clone(), run.settings.clone())
+}
+
+/// The timed runs that at least two of the machines have, in the order of the first machine with each.
+pub fn rows<'a>(machines: &[Machine<'a>]) -> Vec<Row<'a>> {
+    let mut rows: Vec<(_, Row<'a>)> = Vec::new();
+    for (place, machine) in machines.iter().enumerate() {
+        for (run, time) in machine.timed() {
+            let key = key(run);
+            let known = rows.iter().position(|(other, _)| *other == key);
+            let known = known.unwrap_or_else(|| {
+                rows.push((key, Row { run, times: vec![None; machines.len()] }));
+                rows.len() - 1
+            });
+            rows[known].1.times[place].get_or_insert(time);
+        }
+    }
+    let is_common = |row: &Row<'_>| row.times.iter().flatten().count() > 1;
+    rows.into_iter().map(|(_, row)| row).filter(is_common).collect()
+}
+
+impl Row<'_> {
+    /// Time of a frame on a machine: its [work](Time::work) if all machines have the same clock, otherwise the wall time, which they have in common.
+    /// None if it was not timed.
+    pub fn time(&self, machine: usize) -> Option<Statistics> {
+        let mut clocks = self.times.iter().flatten().map(|time| time.clock);
+        let first = clocks.next();
+        let is_common = clocks.all(|clock| Some(clock) == first);
+        let time = self.times.get(machine).copied().flatten()?;
+        Some(if is_common { time.work() } else { time.wall })
+    }
+
+    /// How many times as fast a machine is as the first, with an interval that contains the quotient of the medians wherever both are within their
+    /// own 95 % intervals. None if one was not timed.
+    pub fn speed(&self, machine: usize) -> Option<Interval> {
+        quotient(&self.time(0)?, &self.time(machine)?)
+    }
+}
+
+fn quotient(a: &Statistics, b: &Statistics) -> Option<Interval> {
+    let ends = |of: &Statistics| of.interval.unwrap_or([of.min, of.max]);
+    let ([low, high], [other_low, other_high]) = (ends(a), ends(b));
+    let quotient = Interval { median: a.median / b.median, low: low / other_high, high: high / other_low };
+    let is_usable = |value: f64| value.is_finite() && value > 0.0;
+    [quotient.median, quotient.low, quotient.high].into_iter().all(is_usable).then_some(quotient)
+}
+
+/// Geometric mean, least and greatest of some speeds; none without any.
+pub fn mean(speeds: impl Iterator<Item = Interval>) -> Option<(usize, Interval)> {
+    let medians: Vec<f64> = speeds.map(|speed| speed.median).collect();
+    let mean = (medians.iter().map(|value| value.ln()).sum::<f64>() / medians.len() as f64).exp();
+    let low = medians.iter().copied().reduce(f64::min)?;
+    let high = medians.iter().copied().reduce(f64::max)?;
+    Some((medians.len(), Interval { median: mean, low, high }))
+}
