@@ -2,9 +2,10 @@
 
 use super::engine::Engine;
 use super::place::Place;
-use super::record::{Axes, Experiment, RunSettings};
+use super::record::{self, Axes, Experiment, Run, RunSettings};
 use crate::settings::methods::Method;
 use crate::settings::{Choice, Settings};
+use crate::verify::scenes::Viewpoint;
 
 /// One run.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,6 +65,22 @@ impl Plan {
     /// Whether the settings are those of a method, but for the shading and its numbers.
     pub(super) fn is_of(&self, method: &Method) -> bool {
         self.settings.splatting == method.splatting && self.settings.pull_push == method.pull_push
+    }
+
+    /// Whether a run is this plan's, measured or refused.
+    pub fn is_done_by(&self, run: &Run) -> bool {
+        let place = |from: &record::Viewpoint| {
+            let Place::Given(Viewpoint { eye, target, up, fov_y_deg }) = self.place else {
+                return from.place == self.place.name();
+            };
+            (from.eye, from.target, from.up, from.fov_y_deg) == (eye, target, up, fov_y_deg)
+        };
+        (self.suite, self.experiment, &self.paper_item) == (&*run.suite, run.experiment, &run.paper_item)
+            && (&self.scene, self.points, self.size) == (&run.scene, run.points, run.size)
+            && (self.radius_scale, RunSettings::of(&self.settings))
+                == (run.radius_scale, run.settings.clone())
+            && self.engine.implementation(&self.settings) == run.implementation
+            && run.viewpoint.as_ref().is_none_or(place)
     }
 
     /// The same run by a method with its own settings; the shading remains.

@@ -80,8 +80,11 @@ pub struct Provenance {
     pub code: String,
     /// Start of the measurement.
     pub date: Timestamp,
-    /// Duration of the measurement, seconds.
+    /// Duration of the measurement, seconds, without interruptions.
     pub seconds: f64,
+    /// When it was continued after an interruption.
+    #[serde(default)]
+    pub resumed: Vec<Timestamp>,
     /// The command that repeats the measurement.
     pub command: String,
     /// Names of the suites.

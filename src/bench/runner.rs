@@ -168,9 +168,9 @@ impl Runner {
         self.options.until.is_some_and(|until| Instant::now() >= until)
     }
 
-    /// The images of all runs.
-    pub fn images(self) -> Vec<Images> {
-        self.images
+    /// The images of the runs since the last call. The indices of the next runs' images begin at 0.
+    pub fn take_images(&mut self) -> Vec<Images> {
+        std::mem::take(&mut self.images)
     }
 
     /// The scene or scan of a plan; the last scene is kept.

@@ -1,5 +1,6 @@
 //! One call of the bench: all runs of some suites on one machine.
 
+use super::plan::Plan;
 use super::record::{
     Ceilings, Clock, Gpu, Host, Missing, Provenance, Run, RunSettings, SPLATS, Session, Sweep, Time,
 };
@@ -38,77 +39,147 @@ pub struct SessionOptions {
     pub limit: Option<Duration>,
     /// The command that repeats the session.
     pub command: String,
+    /// A session of the same options that was interrupted: what it has is not measured again.
+    pub earlier: Option<Session>,
 }
 
-/// Runs all suites. A run that cannot be rendered is recorded as refused. An error that ends the session, such as a
-/// lost device, is returned beside the results so far.
-pub fn measure(options: &SessionOptions, progress: &dyn Progress) -> (Session, Result<()>) {
-    let (date, start) = (Timestamp::now(), Instant::now());
-    let end = options.limit.map(|limit| start + limit);
-    let ceilings = options.suites.contains(&Suite::Scaling).then(|| ceilings(options)).flatten();
-    let plans = |suite: &Suite| suite.plans(&options.inputs);
-    let total = options.suites.iter().map(|suite| plans(suite).len() as u64).sum();
-    let (mut runs, mut images, mut missing) = (Vec::new(), Vec::new(), Vec::new());
-    progress.at(STAGE, 0, total);
-    let mut ended = options.suites.iter().enumerate().try_for_each(|(index, suite)| {
-        // The hard cases are last.
-        let left = options.suites.len() - index + usize::from(options.suites[..index].contains(&Suite::Hard));
-        let (plans, until) = (plans(suite), time_limit::end_of_suite(end, left));
-        let of_suite = Options {
-            device: options.device.clone(),
-            rasterizer: options.rasterizer,
-            cache: options.cache.clone(),
-            truth: time_limit::truth(*suite, until),
-            effort: time_limit::effort(suite.effort(), plans.len(), until),
-            until,
-        };
-        let (mut runner, before) =
-            (Runner::new(of_suite, options.inputs.all().cloned().collect()), images.len());
-        let mut estimates = Estimates::default();
-        let done = time_limit::groups(plans, until.is_some()).into_iter().try_for_each(|plans| {
-            if !estimates.fit(&plans, until) {
-                missing.extend(time_limit::missing(&plans));
-                return Ok(());
-            }
-            let (begin, plan, first) = (Instant::now(), &plans[0], runs.len());
-            runner.run_together(&plans, &mut |mut run| {
-                run.images.iter_mut().for_each(|index| *index += before);
-                runs.push(run);
-                progress.at(STAGE, runs.len() as u64, total);
-            })?;
-            missing.extend(time_limit::missing(&plans[runs.len() - first..]));
-            let (scene, points, experiment) = (&plan.scene, plan.points, plan.experiment);
-            log::info!("{scene} {points} {experiment:?}: {} runs in {:.2?}", plans.len(), begin.elapsed());
-            estimates.add(plans, begin.elapsed());
-            Ok(())
-        });
-        images.extend(runner.images());
-        done
-    });
-    progress.at(STAGE, total, total);
-    compare_times(&mut runs);
-    let mut sweeps = Vec::new();
-    if ended.is_ok() && options.suites.contains(&Suite::Hard) {
-        match hard(options, end, progress) {
-            Ok((swept, late)) => {
-                sweeps = swept;
-                missing.extend(late);
-            }
-            Err(error) => ended = Err(error),
-        }
+/// Runs all suites. A run that cannot be rendered is recorded as refused. An error that ends the session, such as a lost device or a
+/// cancellation between two groups of runs, is returned beside the results so far. `keep` receives these after every group.
+pub fn measure(
+    options: SessionOptions,
+    progress: &dyn Progress,
+    keep: &mut dyn FnMut(&Session) -> Result<()>,
+) -> (Session, Result<()>) {
+    let (session, start) = (begin(&options), Instant::now());
+    let before = session.provenance.seconds;
+    let plans: Vec<_> = options.suites.iter().map(|suite| suite.plans(&options.inputs)).collect();
+    let total = plans.iter().map(|plans| plans.len() as u64).sum();
+    let mut measuring = Measuring { options: &options, progress, keep, session, before, start, total };
+    let ended = measuring.all(plans);
+    let mut session = measuring.session;
+    compare_times(&mut session.runs);
+    session.provenance.seconds = before + start.elapsed().as_secs_f64();
+    (session, ended)
+}
+
+/// The earlier session, to be continued, or a new one.
+fn begin(options: &SessionOptions) -> Session {
+    if let Some(mut session) = options.earlier.clone() {
+        session.provenance.resumed.push(Timestamp::now());
+        session.missing.clear();
+        return session;
     }
     let provenance = Provenance {
         version: env!("CARGO_PKG_VERSION").into(),
         commit: code::COMMIT.into(),
         code: code::DIGEST.into(),
-        date,
-        seconds: start.elapsed().as_secs_f64(),
+        date: Timestamp::now(),
+        seconds: 0.0,
+        resumed: Vec::new(),
         command: options.command.clone(),
         suites: options.suites.iter().map(|suite| suite.name().into()).collect(),
         host: host(),
         device: options.device.as_deref().map(|device| gpu(device, options.validated)),
     };
-    (Session { provenance, runs, sweeps, images, ceilings, missing }, ended)
+    Session {
+        provenance,
+        runs: Vec::new(),
+        sweeps: Vec::new(),
+        images: Vec::new(),
+        ceilings: None,
+        missing: Vec::new(),
+    }
+}
+
+/// A session under way.
+struct Measuring<'a> {
+    options: &'a SessionOptions,
+    progress: &'a dyn Progress,
+    keep: &'a mut dyn FnMut(&Session) -> Result<()>,
+    session: Session,
+    /// Duration before an interruption, seconds.
+    before: f64,
+    start: Instant,
+    /// Number of runs of all suites.
+    total: u64,
+}
+
+impl Measuring<'_> {
+    /// Measures the plans of each suite, then the hard cases.
+    fn all(&mut self, plans: Vec<Vec<Plan>>) -> Result<()> {
+        let suites = &self.options.suites;
+        let end = self.options.limit.map(|limit| self.start + limit);
+        self.progress.at(STAGE, self.session.runs.len() as u64, self.total);
+        if suites.contains(&Suite::Scaling) && self.session.ceilings.is_none() {
+            self.session.ceilings = ceilings(self.options);
+        }
+        for (index, (suite, plans)) in suites.iter().zip(plans).enumerate() {
+            // The hard cases are last.
+            let left = suites.len() - index + usize::from(suites[..index].contains(&Suite::Hard));
+            self.suite(*suite, plans, time_limit::end_of_suite(end, left))?;
+        }
+        self.progress.at(STAGE, self.total, self.total);
+        if suites.contains(&Suite::Hard) && self.session.sweeps.is_empty() {
+            let (sweeps, missing) = hard(self.options, end, self.progress)?;
+            self.session.sweeps = sweeps;
+            self.session.missing.extend(missing);
+        }
+        Ok(())
+    }
+
+    /// Measures the groups of a suite that are not in the session.
+    fn suite(&mut self, suite: Suite, plans: Vec<Plan>, until: Option<Instant>) -> Result<()> {
+        let SessionOptions { device, rasterizer, cache, inputs, .. } = self.options;
+        let of_suite = Options {
+            device: device.clone(),
+            rasterizer: *rasterizer,
+            cache: cache.clone(),
+            truth: time_limit::truth(suite, until),
+            effort: time_limit::effort(suite.effort(), plans.len(), until),
+            until,
+        };
+        let mut runner = Runner::new(of_suite, inputs.all().cloned().collect());
+        let mut estimates = Estimates::default();
+        for plans in time_limit::groups(plans, until.is_some()) {
+            if self.has(&plans) {
+                continue;
+            }
+            if self.progress.is_cancelled() {
+                return Err(Error::Cancelled);
+            }
+            if !estimates.fit(&plans, until) {
+                self.session.missing.extend(time_limit::missing(&plans));
+                continue;
+            }
+            let begin = Instant::now();
+            self.group(&mut runner, &plans)?;
+            estimates.add(plans, begin.elapsed());
+        }
+        Ok(())
+    }
+
+    /// Whether all runs of a group are in the session.
+    fn has(&self, plans: &[Plan]) -> bool {
+        plans.iter().all(|plan| self.session.runs.iter().any(|run| plan.is_done_by(run)))
+    }
+
+    /// Measures a group.
+    fn group(&mut self, runner: &mut Runner, plans: &[Plan]) -> Result<()> {
+        let (begin, first, before) = (Instant::now(), self.session.runs.len(), self.session.images.len());
+        let Self { session, progress, total, .. } = self;
+        let measured = runner.run_together(plans, &mut |mut run| {
+            run.images.iter_mut().for_each(|index| *index += before);
+            session.runs.push(run);
+            progress.at(STAGE, session.runs.len() as u64, *total);
+        });
+        session.images.extend(runner.take_images());
+        measured?;
+        session.missing.extend(time_limit::missing(&plans[session.runs.len() - first..]));
+        session.provenance.seconds = self.before + self.start.elapsed().as_secs_f64();
+        let Plan { scene, points, experiment, .. } = &plans[0];
+        log::info!("{scene} {points} {experiment:?}: {} runs in {:.2?}", plans.len(), begin.elapsed());
+        (self.keep)(&self.session)
+    }
 }
 
 /// Rates of the device; none, with a warning, if they cannot be measured.

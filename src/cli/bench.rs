@@ -2,13 +2,15 @@
 
 use super::args::Bench;
 use super::files::{self, cache_folder, read_json};
+use super::interrupt::{self, Interruptible};
 use super::{progress, rasterizers, vulkan};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 use surfel::bench::command::quoted;
-use surfel::bench::record::{FORMAT, schema};
+use surfel::bench::record::{FORMAT, Provenance, Session, schema};
 use surfel::bench::subject::Subject;
 use surfel::bench::suites::UserInputs;
 use surfel::bench::{Results, SessionOptions, Suite, code, csv, measure, report, table};
@@ -17,6 +19,9 @@ use surfel::load::scene;
 use surfel::settings::Choice;
 use surfel::vk::Device;
 use surfel::{Error, Progress, RasterizerChoice, Result};
+
+/// Time after which results are written while more are measured.
+const KEEP: Duration = Duration::from_secs(10);
 
 /// Measures, and writes the results. Earlier results and output paths are checked first.
 pub fn run(args: &Bench) -> Result<()> {
@@ -33,12 +38,65 @@ pub fn run(args: &Bench) -> Result<()> {
     let suites = suites(args);
     if !suites.is_empty() {
         let bars = progress::bars(args.quiet);
-        let (session, ended) = measure(&wanted(args, suites, &*bars)?, &*bars);
+        let options = wanted(args, suites, &*bars)?;
+        interrupt::catch()?;
+        let mut kept = Instant::now();
+        let mut keep = |session: &Session| match &args.json {
+            Some(file) if file != "-" && kept.elapsed() > KEEP => {
+                kept = Instant::now();
+                let mut all = results.clone();
+                all.sessions.push(session.clone());
+                files::write_text(file, &(to_json(&all)? + "\n"))
+            }
+            _ => Ok(()),
+        };
+        let (session, ended) = measure(options, &Interruptible(&*bars), &mut keep);
         results.sessions.push(session);
         // The results before an error are written all the same.
-        return write_results(args, &results).and(ended);
+        return write_results(args, &results).and(ended.map_err(|error| continued(args, error)));
     }
     write_results(args, &results)
+}
+
+/// What the user can do after an interruption.
+fn continued(args: &Bench, error: Error) -> Error {
+    match (error, args.json.as_ref().filter(|file| *file != "-")) {
+        (Error::Cancelled, Some(file)) => Error::Usage(format!(
+            "interrupted: the results so far are in {0}; the same command with --resume continues",
+            Path::new(file).display()
+        )),
+        (Error::Cancelled, None) => {
+            Error::Usage("interrupted: with --json FILE, --resume could continue".into())
+        }
+        (error, _) => error,
+    }
+}
+
+/// The session of `--json` that `--resume` continues; none if there is no such file.
+fn earlier(args: &Bench, command: &str, device: Option<&Device>) -> Result<Option<Session>> {
+    let Some(file) = args.json.as_ref().filter(|_| args.resume) else { return Ok(None) };
+    let path = Path::new(file);
+    if file == "-" {
+        return Err(Error::Usage("--resume: standard output cannot be continued: give --json a file".into()));
+    }
+    if !path.exists() {
+        return Ok(None);
+    }
+    let name = path.display();
+    let session = read(path)?.sessions.pop();
+    let session = session.ok_or_else(|| Error::input(name.to_string(), "no results to continue"))?;
+    let Provenance { code, command: own, device: with, .. } = &session.provenance;
+    let with = with.as_ref().map(|gpu| (gpu.name.as_str(), gpu.driver.as_str()));
+    let here = device.map(Device::description).map(|here| (here.name.as_str(), here.driver.as_str()));
+    let other = match () {
+        () if own != command => format!("by `{own}`, not `{command}`"),
+        () if code != code::DIGEST => "by other code".into(),
+        () if with != here => "on another device".into(),
+        () => return Ok(Some(session)),
+    };
+    let cause =
+        format!("measured {other}, and cannot be continued: leave out --resume, or name another file");
+    Err(Error::input(name.to_string(), cause))
 }
 
 /// Writes the outputs of the options, and prints a table unless one of them goes to standard output.
@@ -181,6 +239,7 @@ fn wanted(args: &Bench, suites: Vec<Suite>, progress: &dyn Progress) -> Result<S
         rasterizer: device
             .as_ref()
             .map_or(RasterizerChoice::Automatic, |device| rasterizers::choice(None, device)),
+        earlier: earlier(args, &command(args, &suites), device.as_deref())?,
         command: command(args, &suites),
         suites,
         inputs: UserInputs {

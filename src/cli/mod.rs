@@ -13,6 +13,8 @@ mod devices;
 mod exit;
 mod files;
 mod info;
+#[cfg(feature = "bench")]
+mod interrupt;
 #[cfg(feature = "metrics")]
 mod limits;
 mod log;

@@ -59,17 +59,22 @@ impl Program {
         self.run_with(arguments, &[])
     }
 
-    /// [`Program::run`] with environment variables.
-    pub fn run_with(&self, arguments: &str, variables: &[(&str, &str)]) -> Run {
-        let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_surfel"))
+    /// The program in its folder, with arguments separated by spaces.
+    pub fn command(&self, arguments: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_surfel"));
+        command
             .args(arguments.split_whitespace())
             .current_dir(self.folder.path())
             .env_remove("RUST_LOG")
             .env("XDG_CACHE_HOME", self.folder.path().join(".cache"))
-            .env("MESA_SHADER_CACHE_DIR", SHADER_CACHE)
-            .envs(variables.iter().copied())
-            .output()
-            .unwrap();
+            .env("MESA_SHADER_CACHE_DIR", SHADER_CACHE);
+        command
+    }
+
+    /// [`Program::run`] with environment variables.
+    pub fn run_with(&self, arguments: &str, variables: &[(&str, &str)]) -> Run {
+        let mut command = self.command(arguments);
+        let Output { status, stdout, stderr } = command.envs(variables.iter().copied()).output().unwrap();
         Run { code: status.code().unwrap(), out: stdout, err: String::from_utf8(stderr).unwrap() }
     }
 

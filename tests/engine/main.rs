@@ -7,6 +7,7 @@ mod bench;
 mod bench_advice;
 mod bench_report;
 mod bench_schema;
+mod bench_session;
 mod capture;
 mod creases;
 mod discs;

@@ -41,6 +41,7 @@ pub fn provenance() -> Provenance {
         code: CODE.into(),
         date: "2026-11-21T12:00:00Z".parse().unwrap(),
         seconds: 57.3,
+        resumed: Vec::new(),
         command: "surfel bench --suite quick --report report".into(),
         suites: vec!["quick".into(), "hard".into()],
         host: Host {

@@ -86,7 +86,9 @@ impl Suite {
             Self::Quick => Effort { least: 6, budget: Duration::from_millis(150), ..Effort::default() },
             Self::Scaling => Effort { least: 3, ..Effort::default() },
             Self::Papers => Effort { least: 3, budget: Duration::from_millis(500), ..Effort::default() },
-            Self::Full => Effort { least: 9, budget: Duration::from_millis(700), ..Effort::default() },
+            Self::Full | Self::Inputs => {
+                Effort { least: 9, budget: Duration::from_millis(700), ..Effort::default() }
+            }
             _ => Effort::default(),
         }
     }

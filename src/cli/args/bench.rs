@@ -45,6 +45,9 @@ pub struct Bench {
     /// Writes all results as JSON; `-` for standard output, instead of the table
     #[arg(long, value_name = "FILE")]
     pub json: Option<OsString>,
+    /// Continues the measurement that was interrupted, with its results in the file of --json
+    #[arg(long, requires = "json")]
+    pub resume: bool,
     /// Writes one line per run as CSV; `-` for standard output, instead of the table
     #[arg(long, value_name = "FILE")]
     pub csv: Option<OsString>,

@@ -1,0 +1,100 @@
+//! Sessions of the bench: their limit of time, interruption and continuation.
+
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+use surfel::Error;
+use surfel::bench::record::{Run, Session};
+use surfel::bench::subject::Subject;
+use surfel::bench::suites::UserInputs;
+use surfel::bench::{SessionOptions, Suite};
+
+#[test]
+fn a_session_ends_in_time_and_lists_what_is_missing() {
+    let limited = |suites, limit| {
+        let options = SessionOptions {
+            suites,
+            inputs: UserInputs::default(),
+            device: None,
+            rasterizer: Default::default(),
+            validated: false,
+            cache: None,
+            limit,
+            earlier: None,
+            command: String::new(),
+        };
+        let start = Instant::now();
+        let (session, _) = surfel::bench::measure(options, &(), &mut |_| Ok(()));
+        (session, start.elapsed())
+    };
+    let all = Suite::Scaling.plans(&UserInputs::default()).len();
+    let (session, took) = limited(vec![Suite::Scaling, Suite::Quick], Some(Duration::from_millis(200)));
+    let of = |suite: &str| {
+        let missing = session.missing.iter().filter(|missing| missing.suite == suite);
+        missing.map(|missing| missing.count).sum::<usize>()
+    };
+    let measured = session.runs.iter().filter(|run| run.suite == "scaling").count();
+    assert!(measured > 0 && of("scaling") > 0, "{measured} in {took:?}");
+    assert_eq!(measured + of("scaling"), all);
+    // Ten million points alone take longer.
+    assert!(session.missing.iter().any(|missing| missing.points == 10_000_000));
+    assert!(took < Duration::from_secs(20), "{took:?}");
+}
+
+/// Cancels what observes it.
+struct Cancelled;
+
+impl surfel::Progress for Cancelled {
+    fn at(&self, _: &'static str, _: u64, _: u64) {}
+
+    fn is_cancelled(&self) -> bool {
+        true
+    }
+}
+
+#[test]
+fn an_interrupted_session_goes_on_with_what_is_missing() {
+    let options = |earlier| SessionOptions {
+        suites: vec![Suite::Inputs],
+        inputs: UserInputs {
+            subjects: vec![Rc::new(Subject::scene("scene:sphere").unwrap())],
+            points: vec![50, 60, 70, 80],
+            size: Some([16, 16]),
+            ..UserInputs::default()
+        },
+        device: None,
+        rasterizer: Default::default(),
+        validated: false,
+        cache: None,
+        limit: None,
+        earlier,
+        command: "surfel bench".into(),
+    };
+    // Without a device methods are refused, which counts as measured; the baselines are not.
+    let mut kept = Vec::new();
+    let mut end_at_second = |session: &Session| {
+        kept.push(session.clone());
+        if kept.len() == 2 { Err(Error::Cancelled) } else { Ok(()) }
+    };
+    let (first, ended) = surfel::bench::measure(options(None), &(), &mut end_at_second);
+    assert!(matches!(ended, Err(Error::Cancelled)));
+    assert_eq!((kept[0].runs.len() * 2, kept[1].runs.len()), (first.runs.len(), first.runs.len()));
+    let (none, ended) = surfel::bench::measure(options(None), &Cancelled, &mut |_| Ok(()));
+    assert!(none.runs.is_empty() && matches!(ended, Err(Error::Cancelled)));
+
+    let (whole, ended) = surfel::bench::measure(options(Some(first.clone())), &(), &mut |_| Ok(()));
+    assert!(ended.is_ok() && whole.provenance.resumed.len() == 1);
+    assert!(
+        whole.provenance.seconds > first.provenance.seconds && whole.provenance.date == first.provenance.date
+    );
+    assert_eq!(whole.runs.len(), 2 * first.runs.len());
+    // What was measured stays as it is, but for its time relative to the baseline.
+    let bare = |runs: &[Run]| runs.iter().map(|run| Run { time: None, ..run.clone() }).collect::<Vec<_>>();
+    assert_eq!(bare(&whole.runs[..first.runs.len()]), bare(&first.runs));
+    // Nothing is left to measure.
+    let mut groups = 0;
+    let again = surfel::bench::measure(options(Some(whole.clone())), &(), &mut |_| {
+        groups += 1;
+        Ok(())
+    });
+    assert_eq!((groups, again.0.runs.len()), (0, whole.runs.len()));
+}
