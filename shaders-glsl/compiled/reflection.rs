@@ -585,7 +585,7 @@ pub static PUSH_COMPUTE: Module = Module {
     name: "push_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("push_compute.spv"),
-    constants: &[0, 17, 28, 32, 33, 34, 35, 38, 39],
+    constants: &[0, 17, 28, 32, 33, 34, 35, 38, 39, 65],
     resources: &[(&resource::VIEWS, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -635,7 +635,7 @@ pub static SHADE_COMPUTE: Module = Module {
     name: "shade_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48],
+    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48, 65],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -645,7 +645,7 @@ pub static SHADE_LOOKUPS_COMPUTE: Module = Module {
     name: "shade_lookups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_lookups_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48],
+    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48, 65],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -655,7 +655,7 @@ pub static SHADE_STORE_IDS_COMPUTE: Module = Module {
     name: "shade_store_ids_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_store_ids_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48],
+    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48, 65],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::ID_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -665,7 +665,7 @@ pub static SHADE_LOOKUPS_STORE_IDS_COMPUTE: Module = Module {
     name: "shade_lookups_store_ids_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_lookups_store_ids_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48],
+    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48, 65],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::ID_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -776,6 +776,8 @@ pub mod constant {
     pub const BEYOND_CLIPS: u32 = 24;
     /// `BOUNDED`, first in `shaders-glsl/cull.glsl`.
     pub const BOUNDED: u32 = 64;
+    /// `BOX_WEIGHTS`, first in `shaders-glsl/push.glsl`.
+    pub const BOX_WEIGHTS: u32 = 65;
     /// `CLIPS`, first in `shaders-glsl/attribute.glsl`.
     pub const CLIPS: u32 = 23;
     /// `CLUSTERS`, first in `shaders-glsl/boxes.glsl`.

@@ -2,7 +2,7 @@
 
 layout(constant_id = 15) const uint FOOTPRINT = 0;        // as in src/settings/splatting.rs
 
-const uint CONIC = 0, AFFINE = 1, PARALLELOGRAM = 2, DISC = 3, SPRITE = 4, WHOLE_SPRITE = 5, SQUARE = 6;
+const uint CONIC = 0, AFFINE = 1, PARALLELOGRAM = 2, DISC = 3, SPRITE = 4, WHOLE_SPRITE = 5, SQUARE = 6, FLAT_SPRITE = 7;
 
 // Whether the kernel lies in the tangent plane.
 bool on_plane() {
@@ -10,7 +10,7 @@ bool on_plane() {
 }
 
 bool is_sprite() {
-    return FOOTPRINT == SPRITE || FOOTPRINT == WHOLE_SPRITE;
+    return FOOTPRINT == SPRITE || FOOTPRINT == WHOLE_SPRITE || FOOTPRINT == FLAT_SPRITE;
 }
 
 // Whether distance, not inverse distance, is affine on the screen.

@@ -113,6 +113,8 @@ Image image_of_sprite(Disc disc, float sigma) {
     vec3 Dy = size * vec3(s.y, t.y, extra.y);
     Conic conic = conic_of(Dx, Dy, vec2(0.0), 1.0 / (frame.cutoff * frame.cutoff), frame.cutoff, sqrt_det);
 
+    // Without depth correction all of the sprite is at its centre's depth.
+    if (FOOTPRINT == FLAT_SPRITE) return Image(conic, sqrt_det, 0.0, vec2(0.0));
     vec3 tilt = (across < 0.0 ? -1.0 : 1.0) * sine / (cosine * whole) * lean;
     vec2 slope = vec2(dot(tilt, view.ray_hi[0].xyz), dot(tilt, view.ray_hi[1].xyz));
     if (PERSPECTIVE) slope *= -disc.w.x / view.near;

@@ -2,6 +2,8 @@
 
 layout(constant_id = 32) const bool PING_PONG = false; // both pyramids alternate by level
 
+layout(constant_id = 65) const bool BOX_WEIGHTS = false; // of discs, by the published rules: 1 up to the rim
+
 // Widening of a disc's variance on level 0, px²; four times as much per level. Narrower discs leave holes.
 const float WIDENING = 0.25;
 // Negated ln of the weight at a disc's rim: σ is a third of the radius; half of it as published.
@@ -47,12 +49,13 @@ Sample candidate(uint k, ivec2 pixel) {
 }
 
 // Weight of a candidate for the pixel with this centre, 0 if its disc does not cover that. The front disc is the nearest that does; as
-// published, the one of greatest weight.
+// published, the one of greatest Gaussian weight.
 float weight_of(Sample s, vec2 centre, float widening, inout Sums sums) {
     float m2 = radii2(s, centre + s.displacement, -s.displacement, widening);
     bool covers = s.near > 0.0 && m2 <= 1.0;
     float weight = covers ? exp(-(PAPER ? PAPER_RIM : RIM) * m2) : 0.0;
     float priority = PAPER ? weight : -s.near;
+    if (PAPER && BOX_WEIGHTS && covers) weight = 1.0;
     if (covers && priority > sums.priority) {
         sums.priority = priority;
         sums.front = s;
@@ -78,7 +81,8 @@ void add(Sample s, float w, vec2 centre, inout Sums sums) {
     sums.squares += w * vec3(displacement.x * displacement.x, displacement.x * displacement.y, displacement.y * displacement.y);
     sums.x_products += w * displacement.x * offset;
     sums.y_products += w * displacement.y * offset;
-    if (w > sums.greatest) {
+    // Box weights are equal: the front disc has the id.
+    if (BOX_WEIGHTS ? w > 0.0 && s.id == sums.front.id : w > sums.greatest) {
         sums.greatest = w;
         sums.mean.id = s.id;
     }

@@ -9,8 +9,8 @@ use crate::error::Result;
 use crate::frame::PassTraffic;
 use crate::geometry::{Camera, Surfels};
 use crate::picture::Picture;
-use crate::settings::Settings;
 use crate::settings::methods::Method;
+use crate::settings::{Choice, Settings};
 use crate::verify::baseline::{self, Baseline, Kind};
 use crate::vk::{Device, DeviceDescription, PassTime};
 use crate::{Outputs, Precision, Rasterizer, RasterizerChoice, RenderOptions, Renderer, Scene};
@@ -37,8 +37,13 @@ impl Engine {
     /// The default method with default options.
     pub const DEFAULT: Self = Self::Splatting { rasterizer: None, precision: Precision::Full };
 
-    /// Name in the results, with these settings.
+    /// Name in the results, with these settings: after the preset that is nearest to them, of equal ones ours.
     pub fn implementation(&self, settings: &Settings) -> Implementation {
+        self.implementation_from(&preset(settings), settings)
+    }
+
+    /// Name in the results, with these settings: after this preset.
+    pub fn implementation_from(&self, method: &Method, settings: &Settings) -> Implementation {
         match self {
             Self::Splatting { rasterizer, precision } => {
                 let rasterizer = rasterizer.map(|rasterizer| match rasterizer {
@@ -46,9 +51,8 @@ impl Engine {
                     Rasterizer::Compute => "--rasterizer compute",
                 });
                 let half = (*precision == Precision::Half).then_some("--half");
-                let (method, changes) = preset(settings);
                 let ways = rasterizer.into_iter().chain(half).map(str::to_owned);
-                let variant = changes.into_iter().chain(ways).collect::<Vec<_>>().join(" ");
+                let variant = changes(method, settings).into_iter().chain(ways).collect::<Vec<_>>().join(" ");
                 Implementation { method: method.name.into(), variant }
             }
             Self::Baseline(Kind::Splats) => Implementation { method: SPLATS.into(), variant: String::new() },
@@ -58,24 +62,29 @@ impl Engine {
     }
 }
 
-/// The method of the settings, and the settings along which they differ from its preset. For splats it is the preset
-/// that differs along the fewest axes, then the first one, preferring equal numbers.
-fn preset(settings: &Settings) -> (Method, Vec<String>) {
+/// The preset nearest to the settings. For splats it is the one from which they differ along the fewest axes, then the first one, preferring
+/// equal numbers.
+fn preset(settings: &Settings) -> Method {
     let of_points = |method: &Method| method.pull_push.is_some() && method.pull_push == settings.pull_push;
     if let Some(method) = Method::ALL.into_iter().find(of_points) {
-        return (method, Vec::new());
+        return method;
     }
-    let own = Axes::of(&settings.splatting);
-    let changes = |method: &Method| {
-        let preset = Axes::of(&method.splatting);
-        let pairs = own.named().into_iter().zip(preset.named()).filter(|(own, preset)| own != preset);
-        pairs.map(|((axis, choice), _)| format!("--{axis} {choice}")).collect::<Vec<_>>()
-    };
-    let all = Method::SPLATTING.map(|method| (method, changes(&method)));
     let numbers = (settings.cutoff, settings.lowpass, settings.widen, settings.cull);
     let differs = |method: &Method| (method.cutoff, method.lowpass, method.widen, method.cull) != numbers;
-    let nearest = all.into_iter().min_by_key(|(method, changes)| (changes.len(), differs(method)));
-    nearest.unwrap_or((Method::SPLATTING[0], Vec::new()))
+    let splatting = Method::ALL.into_iter().filter(|method| method.pull_push.is_none());
+    let nearest = splatting.min_by_key(|method| (changes(method, settings).len(), differs(method)));
+    nearest.unwrap_or(Method::SPLATTING[0])
+}
+
+/// Axes along which settings differ from those of a preset, as options.
+fn changes(method: &Method, settings: &Settings) -> Vec<String> {
+    if let (Some(own), Some(preset)) = (settings.pull_push, method.pull_push) {
+        let weights = (own.weights != preset.weights).then(|| format!("with {} weights", own.weights.name()));
+        return weights.into_iter().collect();
+    }
+    let (own, preset) = (Axes::of(&settings.splatting), Axes::of(&method.splatting));
+    let pairs = own.named().into_iter().zip(preset.named()).filter(|(own, preset)| own != preset);
+    pairs.map(|((axis, choice), _)| format!("--{axis} {choice}")).collect()
 }
 
 /// An engine with a loaded scene, ready for frames of one size.
@@ -230,7 +239,12 @@ mod tests {
     #[test]
     fn an_implementation_is_named_after_its_preset_or_the_nearest_with_its_changes() {
         for method in Method::ALL {
-            assert_eq!(Engine::DEFAULT.implementation(&method.settings()).label(), method.name);
+            let settings = method.settings();
+            assert_eq!(Engine::DEFAULT.implementation_from(&method, &settings).label(), method.name);
+            // Those as published that equal one of ours go by its name.
+            let nearest = Engine::DEFAULT.implementation(&settings);
+            assert!(Method::named(&nearest.method).is_some_and(|nearest| nearest.settings() == settings));
+            assert_eq!(nearest.variant, "");
         }
         let default = Splatting::default();
         assert_eq!(named(Splatting { filter: Filter::None, ..default }), "perspective-ewa --filter none");

@@ -5,6 +5,7 @@
 
 use super::group::grouped;
 use super::record::{Experiment, Run, Session, View};
+use crate::settings::methods::Method;
 
 /// A run that was timed and compared with the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,10 +41,14 @@ pub struct Recommendations<'a> {
 }
 
 impl<'a> Recommendations<'a> {
-    /// From the budget experiment's runs against exact pictures, without the CPU baseline; none if there are no such runs.
+    /// From the budget experiment's runs against exact pictures, without the CPU baseline and methods [as published](Method::PAPERS); none if
+    /// there are no such runs.
     pub fn of(session: &'a Session) -> Option<Self> {
         let methods = |run: &&Run| {
-            run.experiment == Experiment::Budget && !run.implementation.is_baseline() && run.has_truth()
+            let method = Method::named(&run.implementation.method);
+            let published = method.is_some_and(|method| method.is_as_published());
+            let own = !run.implementation.is_baseline() && !published;
+            run.experiment == Experiment::Budget && own && run.has_truth()
         };
         let groups = grouped(session.runs.iter().filter(methods), Run::view);
         let column = |(view, runs): (_, Vec<&'a Run>)| {

@@ -3,7 +3,7 @@
 use super::pass::Scope;
 use super::renderer::RenderOptions;
 use crate::scene::{ColourStream, PrimitiveKinds, Streams, SurfelLayout};
-use crate::settings::pull_push::{PullPush, Rules, Storage};
+use crate::settings::pull_push::{PullPush, Rules, Storage, Weights};
 use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
 use crate::settings::{Alpha, Cull, Outputs, Precision, Rasterizer, Settings, Shading, Widen};
 use crate::vk::Constants;
@@ -299,6 +299,10 @@ impl Variant {
             .with(constant::NORMALIZATION, self.normalization as u32)
             .with(constant::SHADE_SPLATS, self.shade_splats)
             .with(constant::PAPER, self.pull_push.is_some_and(|pull_push| pull_push.rules == Rules::Paper))
+            .with(
+                constant::BOX_WEIGHTS,
+                self.pull_push.is_some_and(|pull_push| pull_push.weights == Weights::Box),
+            )
             .with(
                 constant::PING_PONG,
                 self.pull_push.is_some_and(|pull_push| pull_push.storage == Storage::PingPong),

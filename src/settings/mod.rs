@@ -113,6 +113,7 @@ impl Settings {
                 "pull-push has no splats: leave out footprint, kernel, filter, visibility, normalization and shade".into(),
             ));
         }
+        self.pull_push.map_or(Ok(()), PullPush::check)?;
         self.splatting.check()?;
         let positive = |name: &str, value: f32| {
             if value.is_finite() && value > 0.0 {

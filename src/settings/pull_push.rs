@@ -1,10 +1,14 @@
 //! Variants of pull–push.
 
+use crate::error::{Error, Result};
+
 /// Reconstruction of a surface from points one pixel large (marroquim2008).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PullPush {
     /// Criteria for samples of one surface, and the extent of each.
     pub rules: Rules,
+    /// Weight of a disc in the push.
+    pub weights: Weights,
     /// Storage of the levels. It does not change the picture.
     pub storage: Storage,
 }
@@ -30,6 +34,27 @@ pub enum Rules {
     Robust,
 }
 
+/// Weight of a disc in the push, within its ellipse.
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    strum::EnumMessage,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
+pub enum Weights {
+    /// A Gaussian.
+    Gaussian,
+    /// 1 up to the rim, by the published rules only: the filter of the authors' earlier algorithm (marroquim2008 §3.3, figure 4a).
+    Box,
+}
+
 /// Storage of the levels in two pyramids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Storage {
@@ -47,7 +72,17 @@ impl PullPush {
             Rules::Paper => Storage::PingPong,
             Rules::Robust => Storage::Apart,
         };
-        Self { rules, storage }
+        Self { rules, weights: Weights::Gaussian, storage }
+    }
+
+    /// Returns an error for combinations that are not supported.
+    pub(super) fn check(self) -> Result<()> {
+        match (self.rules, self.weights) {
+            (Rules::Robust, Weights::Box) => Err(Error::Usage(
+                "box weights are of the published rules: choose pull-push-paper, or Gaussian weights".into(),
+            )),
+            _ => Ok(()),
+        }
     }
 }
 

@@ -54,6 +54,8 @@ pub enum Footprint {
     WholeSprite = 5,
     /// A square parallel to the image plane, at the depth of its centre (botsch2003 §3.1).
     Square = 6,
+    /// A sprite without depth correction: all of it is at the depth of its centre (botsch2003 §3.3, figure 6).
+    FlatSprite = 7,
 }
 
 /// Falloff of a splat's weight.
@@ -184,7 +186,7 @@ impl Footprint {
 
     /// Whether it is an elliptical sprite.
     pub fn is_sprite(self) -> bool {
-        matches!(self, Self::Sprite | Self::WholeSprite)
+        matches!(self, Self::Sprite | Self::WholeSprite | Self::FlatSprite)
     }
 }
 
@@ -209,7 +211,11 @@ impl Splatting {
                 "a kernel in the tangent plane has its low-pass filter there: choose the filter object or none",
             ),
             (
-                Footprint::Conic | Footprint::Affine | Footprint::Sprite | Footprint::WholeSprite,
+                Footprint::Conic
+                | Footprint::Affine
+                | Footprint::Sprite
+                | Footprint::WholeSprite
+                | Footprint::FlatSprite,
                 Filter::Object,
             ) => refuse(
                 "a filter in object space widens a kernel in the tangent plane: choose the footprint parallelogram or disc, or the \

@@ -122,6 +122,7 @@ fn every_footprint_under_every_visibility_with_coverage() {
         Footprint::Sprite,
         Footprint::WholeSprite,
         Footprint::Square,
+        Footprint::FlatSprite,
     ];
     let visibilities = [Visibility::Ray, Visibility::Axis, Visibility::Nearest];
     let all = footprints.iter().flat_map(|f| visibilities.iter().filter_map(|v| combined(*f, *v)));
@@ -141,7 +142,7 @@ fn every_footprint_under_every_visibility_with_coverage() {
         )
     };
     let all: Vec<Splatting> = all.collect();
-    assert_eq!(all.len(), 19);
+    assert_eq!(all.len(), 22);
     assert_agree(all.into_iter().enumerate().flat_map(by).collect());
 }
 

@@ -1,4 +1,4 @@
-//! `confetti`: *Confetti: Object-Space Point Blending and Splatting*, Pajarola, Sainz, Guidotti, IEEE Transactions on Visualization and
+//! `confetti` and `confetti-paper`: *Confetti: Object-Space Point Blending and Splatting*, Pajarola, Sainz, Guidotti, IEEE Transactions on Visualization and
 //! Computer Graphics 2004.
 //!
 //! ```text
@@ -29,4 +29,29 @@ pub const METHOD: Method = Method {
     lowpass: 0.0,
     widen: Widen::All,
     cull: Cull::Back,
+};
+
+/// The preset as published, with the kernel of figure 18 and of its times: "parameters n = 3, a = 6.0, and b = 1.5" (§7). The paper gives no
+/// number for ε.
+pub const PAPER: Method = Method {
+    name: "confetti-paper",
+    splatting: Splatting {
+        footprint: Footprint::Disc,
+        kernel: Kernel::Confetti { a: 6.0, n: 3.0 },
+        // §8: it "cannot directly integrate screen-space antialiasing".
+        filter: Filter::None,
+        // §6.4.
+        visibility: Visibility::Ray,
+        // §6.5.
+        normalization: Normalization::Pixel,
+        // §7: "full per-vertex illumination".
+        shade: Shade::Splat,
+    },
+    // The kernel ends at the disc's rim, b.
+    cutoff: 2.0,
+    lowpass: 0.0,
+    widen: Widen::All,
+    // §6.2, there of nodes of the octree.
+    cull: Cull::Back,
+    ..METHOD
 };

@@ -3,8 +3,8 @@
 //! # How to add a method
 //!
 //! 1. `settings/methods/NAME.rs`: its paper and its pipeline figure in the documentation, and a [`Method`] of its choices.
-//! 2. Here: its module, and its place at the end of [`Method::SPLATTING`], or of what [`Method::ALL`] adds to that: the first is the default.
-//!    Command line, window, benchmark and tests go by these lists.
+//! 2. Here: its module, and its place at the end of [`Method::SPLATTING`], or of what [`Method::OWN`] adds to that: the first is the default.
+//!    As published, it belongs at the end of [`Method::PAPERS`]. Command line, window, benchmark and tests go by these lists.
 //!
 //! A method that needs a choice which no axis has adds it to the axis' enum in [`splatting`](super::splatting), to the shader that branches
 //! on it, and to the reference function with the shader's name.
@@ -45,15 +45,31 @@ impl Method {
     pub const SPLATTING: [Self; 5] =
         [perspective_ewa::METHOD, object_ewa::METHOD, sprites::METHOD, sprites::UNFILTERED, confetti::METHOD];
 
-    /// All presets.
-    pub const ALL: [Self; 7] = {
+    /// Our presets: the papers' methods, improved where measurements support it.
+    pub const OWN: [Self; 6] = {
         let [a, b, c, d, e] = Self::SPLATTING;
-        [a, b, c, d, e, pull_push::METHOD, pull_push::PAPER]
+        [a, b, c, d, e, pull_push::METHOD]
+    };
+
+    /// The presets as published, which changes of our presets do not affect. The suite `papers` renders by them; they are never recommended.
+    pub const PAPERS: [Self; 5] =
+        [perspective_ewa::PAPER, object_ewa::PAPER, sprites::PAPER, confetti::PAPER, pull_push::PAPER];
+
+    /// All presets.
+    pub const ALL: [Self; 11] = {
+        let [a, b, c, d, e, f] = Self::OWN;
+        let [g, h, i, j, k] = Self::PAPERS;
+        [a, b, c, d, e, f, g, h, i, j, k]
     };
 
     /// The preset with this name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|method| method.name == name)
+    }
+
+    /// Whether it is one of [`Self::PAPERS`].
+    pub fn is_as_published(&self) -> bool {
+        Self::PAPERS.iter().any(|method| method.name == self.name)
     }
 
     /// Settings of the preset.
@@ -73,6 +89,7 @@ impl Method {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::settings::splatting::{Filter, Footprint, Kernel, Shade};
 
     #[test]
     fn the_default_settings_are_those_of_the_first_method() {
@@ -85,5 +102,25 @@ mod tests {
             method.settings().check().unwrap();
             assert_eq!(Method::named(method.name), Some(method));
         }
+        let [own, papers] = [&Method::OWN[..], &Method::PAPERS].map(|list| list.iter());
+        assert!(own.clone().all(|method| !method.is_as_published()));
+        assert!(papers.clone().all(|method| method.name.ends_with("-paper")));
+    }
+
+    /// The values that the papers state, with their sections in the presets' files.
+    #[test]
+    fn presets_as_published_have_the_published_values() {
+        for method in Method::PAPERS.into_iter().filter(|method| method.pull_push.is_none()) {
+            assert_eq!((method.splatting.shade, method.widen), (Shade::Splat, Widen::All), "{}", method.name);
+        }
+        let [perspective, object, sprites, confetti, pull_push] = Method::PAPERS;
+        assert!(perspective.cutoff > 1.0 && perspective.cutoff < 2.0);
+        assert_eq!((perspective.lowpass, object.lowpass), (1.0, 1.0));
+        assert!((0.5 * object.cutoff * object.cutoff - 1.0).abs() < 1e-6);
+        assert_eq!(sprites.splatting.footprint, Footprint::WholeSprite);
+        assert_eq!(confetti.splatting.kernel, Kernel::Confetti { a: 6.0, n: 3.0 });
+        let filters = [sprites, confetti].map(|method| method.splatting.filter);
+        assert_eq!(filters, [Filter::None; 2]);
+        assert!([object, sprites, confetti, pull_push].iter().all(|method| method.cull == Cull::Back));
     }
 }

@@ -1,4 +1,4 @@
-//! `object-ewa`: *Object Space EWA Surface Splatting: A Hardware Accelerated Approach to High Quality Point Rendering*, Ren, Pfister,
+//! `object-ewa` and `object-ewa-paper`: *Object Space EWA Surface Splatting: A Hardware Accelerated Approach to High Quality Point Rendering*, Ren, Pfister,
 //! Zwicker, Eurographics 2002.
 //!
 //! ```text
@@ -35,6 +35,32 @@ pub const METHOD: Method = Method {
     lowpass: 1.0,
     widen: Widen::All,
     cull: Cull::Back,
+};
+
+/// The preset as published, of the higher quality: "refined by per-pixel normalization" (§8). That of higher speed needs surfels with
+/// normalization weights, `--normalization surfel`. The paper gives no number for the depth threshold: "the average distance between the
+/// surfels" (§5.1).
+pub const PAPER: Method = Method {
+    name: "object-ewa-paper",
+    splatting: Splatting {
+        footprint: Footprint::Parallelogram,
+        kernel: Kernel::Gaussian,
+        // Equation 7.
+        filter: Filter::Object,
+        // §5.1.
+        visibility: Visibility::Ray,
+        normalization: Normalization::Pixel,
+        shade: Shade::Splat,
+    },
+    // §5.2: ½ y·y ≤ c = 1.
+    cutoff: std::f32::consts::SQRT_2,
+    // §3: "the identity matrix".
+    lowpass: 1.0,
+    // Equation 5.
+    widen: Widen::All,
+    // §6.2, there of whole blocks.
+    cull: Cull::Back,
+    ..METHOD
 };
 
 /// The preset with normalization by surfel while the camera is `moving`, which needs surfels with normalization weights; otherwise by

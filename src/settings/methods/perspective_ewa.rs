@@ -1,4 +1,4 @@
-//! `perspective-ewa`: *Perspective Accurate Splatting*, Zwicker, Räsänen, Botsch, Dachsbacher, Pauly, Graphics Interface 2004.
+//! `perspective-ewa` and `perspective-ewa-paper`: *Perspective Accurate Splatting*, Zwicker, Räsänen, Botsch, Dachsbacher, Pauly, Graphics Interface 2004.
 //!
 //! ```text
 //! footprint    disc → the ellipse that its rim projects to (§4.4), + H (equation 3)
@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Departs from the paper where measurements support it: a cut-off of 2.5 σ, a filter that widens only splats smaller than itself, and
-//! lighting after blending. The paper's values are `cutoff` 2 and `widen` all.
+//! lighting after blending. `perspective-ewa-paper` does not.
 
 use super::Method;
 use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
@@ -31,4 +31,19 @@ pub const METHOD: Method = Method {
     lowpass: 1.0,
     widen: Widen::Small,
     cull: Cull::None,
+};
+
+/// The preset as published. The paper neither lights nor culls by facing: what it blends are the colours of splats (§3). It gives no number for
+/// the offset of the depth image.
+pub const PAPER: Method = Method {
+    name: "perspective-ewa-paper",
+    splatting: Splatting { shade: Shade::Splat, ..METHOD.splatting },
+    // §4.4: "typically in the range" from 1 to 2; its middle.
+    cutoff: 1.5,
+    // §3: "typically an identity matrix".
+    lowpass: 1.0,
+    // Equation 3.
+    widen: Widen::All,
+    cull: Cull::None,
+    ..METHOD
 };

@@ -1,4 +1,4 @@
-//! `sprites` and `sprites-unfiltered`: *High-Quality Point-Based Rendering on Modern GPUs*, Botsch, Kobbelt, Pacific Graphics 2003.
+//! `sprites`, `sprites-unfiltered` and `sprites-paper`: *High-Quality Point-Based Rendering on Modern GPUs*, Botsch, Kobbelt, Pacific Graphics 2003.
 //!
 //! ```text
 //! footprint    disc → a square of the disc's size (equation 1), in it the ellipse of parallel projection (equation 2)
@@ -7,7 +7,8 @@
 //! normalize    / Σ w (§3.4)
 //! ```
 //!
-//! `sprites-unfiltered` shows only the nearest ellipse of each pixel (§3.2), in one pass.
+//! `sprites-unfiltered` shows only the nearest ellipse of each pixel (§3.2), in one pass. `sprites-paper` is filtered, too; unfiltered it is
+//! `sprites-paper --visibility nearest --normalization none`.
 
 use super::Method;
 use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
@@ -40,5 +41,26 @@ pub const UNFILTERED: Method = Method {
         normalization: Normalization::None,
         ..METHOD.splatting
     },
+    ..METHOD
+};
+
+/// The preset of higher quality as published. The paper gives numbers neither for the cut-off of its Gaussian nor for ε.
+pub const PAPER: Method = Method {
+    name: "sprites-paper",
+    splatting: Splatting {
+        // §4: "rounding the resulting size to an integer value".
+        footprint: Footprint::WholeSprite,
+        kernel: Kernel::Gaussian,
+        // §3.3: the weight is a function of the distance in object space alone.
+        filter: Filter::None,
+        visibility: Visibility::Ray,
+        normalization: Normalization::Pixel,
+        shade: Shade::Splat,
+    },
+    cutoff: 2.0,
+    lowpass: 0.0,
+    widen: Widen::All,
+    // §4: "we added a backface-culling method to the vertex shader".
+    cull: Cull::Back,
     ..METHOD
 };

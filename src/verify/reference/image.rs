@@ -46,6 +46,7 @@ impl Projector {
             Footprint::Sprite => self.sprite_image(disc, 1.0),
             Footprint::WholeSprite => self.sprite_image(disc, self.whole(disc)),
             Footprint::Square => self.square_image(disc),
+            Footprint::FlatSprite => self.flat_sprite_image(disc),
         }
     }
 
@@ -129,6 +130,13 @@ impl Projector {
             nearest: distance - disc.surfel.radius * sine,
             dual: false,
         }
+    }
+
+    /// A sprite at the depth of its centre (botsch2003 figure 6).
+    fn flat_sprite_image(&self, disc: &Disc) -> Image {
+        let distance = self.distance(disc.centre);
+        let plane = per_pixel_plane(distance, DVec2::ZERO, disc.projected);
+        Image { plane, nearest: distance, ..self.sprite_image(disc, 1.0) }
     }
 
     /// A square parallel to the image plane, of the disc's size and at its depth (botsch2003 §3.1).

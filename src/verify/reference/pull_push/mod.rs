@@ -254,7 +254,7 @@ impl Reconstruction {
         progress: &PassProgress<'_>,
     ) -> LevelDecisions {
         let made = match self.pull_push.rules {
-            Rules::Paper => paper::push(&self.rays, coarser, pulled, progress),
+            Rules::Paper => paper::push(&self.rays, self.pull_push.weights, coarser, pulled, progress),
             Rules::Robust => push::pass(&self.rays, coarser, pulled, progress),
         };
         LevelDecisions { level: self.stored(made.level), ..made }

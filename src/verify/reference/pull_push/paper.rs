@@ -5,6 +5,7 @@ use super::decisions::Decisions;
 use super::pull::{children, mean_of_front};
 use super::push::nearest_four;
 use super::{Level, LevelDecisions, PassProgress, Sample, centre};
+use crate::settings::pull_push::Weights;
 use glam::{DVec2, DVec3};
 
 /// Least minor semi-axis of an ellipse, px.
@@ -37,6 +38,7 @@ pub fn pull(rays: &CameraRays, finer: &Level, progress: &PassProgress<'_>) -> Le
 /// Coarse to fine: replaces a pixel that is empty or lies behind the coarser surface.
 pub fn push(
     rays: &CameraRays,
+    weights: Weights,
     coarser: &Level,
     pulled: &Level,
     progress: &PassProgress<'_>,
@@ -48,15 +50,19 @@ pub fn push(
         let behind = |point: &Sample| coarser.at(around[0]).is_some_and(|surface| point.near > surface.far);
         match point {
             Some(point) if !behind(&point) => Some(point),
-            _ => blend(rays, own, decisions, &around.map(|at| Some((coarser.at(at)?, coarser.centre(at))))),
+            _ => {
+                let discs = around.map(|at| Some((coarser.at(at)?, coarser.centre(at))));
+                blend(rays, weights, own, decisions, &discs)
+            }
         }
     })
 }
 
-/// The mean of covering discs of one kind: that of the greatest weight, as the paper does not define a mix of tangents
+/// The mean of covering discs of one kind: that of the greatest Gaussian weight, as the paper does not define a mix of tangents
 /// and normals.
 fn blend(
     rays: &CameraRays,
+    weights: Weights,
     own: DVec2,
     decisions: &Decisions,
     coarser: &[Option<(Sample, DVec2)>],
@@ -64,7 +70,11 @@ fn blend(
     let weighted = coarser.iter().flatten().filter_map(|(sample, centre)| {
         let disc = *centre + sample.displacement;
         let radii2 = radii2(rays, sample, disc, own);
-        decisions.covers(radii2).then(|| (sample, disc, (-RIM * radii2.value).exp(), radii2.value))
+        let weight = match weights {
+            Weights::Gaussian => (-RIM * radii2.value).exp(),
+            Weights::Box => 1.0,
+        };
+        decisions.covers(radii2).then_some((sample, disc, weight, radii2.value))
     });
     let mut discs: Vec<_> = weighted.collect();
     let least = decisions.least(&discs, |disc| disc.3, |a, b| (a.0.id, a.0.tube) == (b.0.id, b.0.tube))?;
