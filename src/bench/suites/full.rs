@@ -19,7 +19,8 @@ const SIDES: [u32; 4] = [64, 128, 256, 1024];
 
 /// `scans` are rendered at every density as the user's inputs are.
 pub(super) fn plans(scans: &[Rc<Subject>]) -> Vec<Plan> {
-    let scenes = || scenes::list().iter().map(|scene| scene.name);
+    // The disc is for a single surfel.
+    let scenes = || scenes::list().iter().map(|scene| scene.name).filter(|name| *name != "scene:disc");
     let mut plans: Vec<_> = scenes().flat_map(densities).collect();
     let scans = UserInputs { subjects: scans.to_vec(), ..Default::default() };
     plans.extend(inputs::plans(Suite::Full, &scans));

@@ -115,8 +115,8 @@ const CLIPS_NAME: &str = "clips";
 const PRIMITIVES: Parameter = Parameter {
     name: PRIMITIVES_NAME,
     default: "off",
-    values: Values::Choice(&["on", "off"]),
-    meaning: "whether tubes and ribbons are lines, and boxes and floors triangles, rather than surfels",
+    values: Values::Choice(&["on", "off", "triangles"]),
+    meaning: "whether tubes and ribbons are lines or triangles, and boxes and floors triangles, rather than surfels",
 };
 /// Name of the parameter for lines and polygons.
 pub(super) const PRIMITIVES_NAME: &str = "primitives";
@@ -129,12 +129,13 @@ const SEGMENTS: Parameter = Parameter {
 };
 
 const fn albedo(default: &'static str) -> Parameter {
-    let values = Values::Choice(&["checker", "stripes", "zone", "noise", "plain"]);
+    let values = Values::Choice(&["checker", "stripes", "zone", "gaussian", "noise", "plain"]);
     Parameter { name: "albedo", default, values, meaning: "texture" }
 }
 
 const fn frequency(default: &'static str) -> Parameter {
-    let meaning = "periods of the texture in a unit of length; of the zone plate at distance 1";
+    let meaning =
+        "periods of the texture in a unit of length; of the zone plate at distance 1; of the Gaussian 1 / σ";
     Parameter { name: "frequency", default, values: Values::Number(0.0, 1e6), meaning }
 }
 
@@ -184,6 +185,14 @@ const SCENES: &[SceneInfo] = &[
         viewpoint: view(COMPARISON, [0.0; 3], 45.0),
         surface_parameters: &[albedo("checker"), frequency("2.5464790894703255")],
         build: models::sphere,
+        edges: None,
+    },
+    SceneInfo {
+        name: "scene:disc",
+        summary: "a flat disc of radius 1, seen at a flat angle from nearby; a single surfel is the disc itself",
+        viewpoint: view([0.0, 0.45, 1.35], [0.0, -0.15, 0.3], 100.0),
+        surface_parameters: &[albedo("gaussian"), frequency("2")],
+        build: models::disc,
         edges: None,
     },
     SceneInfo {

@@ -25,7 +25,8 @@ pub use surface::{Hit, Kind, Piece, Surface};
 pub use texture::{Pattern, Rgb, Texture};
 
 use crate::error::{Error, Result};
-use crate::geometry::{Model, Surfels};
+use crate::geometry::{Colours, Model, Surfels};
+use glam::{DVec2, Vec3};
 use query::{PREFIX, Query};
 use surface::Assembly;
 
@@ -65,7 +66,7 @@ pub fn is_textured(text: &str) -> Result<bool> {
 /// Like [`surface`].
 pub fn model(text: &str) -> Result<Model> {
     let query = Query::parse(text)?;
-    if query.word(catalogue::PRIMITIVES_NAME) != "on" {
+    if !has_primitives(&query) {
         return open(text).map(Model::from);
     }
     let (points, others): (Vec<_>, Vec<_>) =
@@ -85,17 +86,38 @@ pub fn model(text: &str) -> Result<Model> {
 /// Like [`surface`]; also if the text asks for lines and triangles.
 pub fn open(text: &str) -> Result<Surfels> {
     let query = Query::parse(text)?;
-    if query.word(catalogue::PRIMITIVES_NAME) == "on" {
+    if has_primitives(&query) {
         let text = format!("{text}: lines and triangles are no surfels: leave `primitives` off");
         return Err(Error::Usage(text));
     }
     let mut surfels = if is_comparison(&query) {
         bumpy_sphere::sample(query.whole("points") as u32, query.whole("seed"))
+    } else if query.scene.name == "scene:disc" && query.whole("points") == 1 {
+        whole_disc(&query)
     } else {
         samplers::sample(&query, &assemble(&query))?
     };
     surfels.sort_morton();
     Ok(surfels)
+}
+
+/// Whether the text asks for lines and triangles.
+fn has_primitives(query: &Query) -> bool {
+    ["on", "triangles"].contains(&query.word(catalogue::PRIMITIVES_NAME))
+}
+
+/// The disc as its only surfel.
+fn whole_disc(query: &Query) -> Surfels {
+    let pieces = (query.scene.build)(query);
+    let albedo =
+        |piece: &Piece| piece.texture.at(&piece.shape.at(DVec2::ZERO).point).map(|channel| channel as f32);
+    Surfels {
+        positions: vec![Vec3::ZERO],
+        normals: vec![Vec3::Y],
+        radii: vec![1.0],
+        colours: Some(Colours::Linear(pieces.iter().map(albedo).collect())),
+        ..Default::default()
+    }
 }
 
 fn assemble(query: &Query) -> Assembly {

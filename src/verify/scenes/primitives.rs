@@ -1,5 +1,6 @@
 //! Lines and polygons of scenes: the pieces that can be drawn so.
 
+use super::catalogue::PRIMITIVES_NAME;
 use super::query::Query;
 use super::surface::{Kind, Piece};
 use crate::geometry::{Colours, Primitives};
@@ -16,15 +17,23 @@ pub struct CentrelinePoint {
     pub radius: f64,
 }
 
+/// Sides of a tube of triangles: a ring of vertices, "usually three" (marroquim2008 section 4.3).
+const RING: usize = 3;
+
 /// The lines and triangles of `pieces`. A tube's caps have no centre line: its lines have round ends.
 pub fn primitives(query: &Query, pieces: &[Piece]) -> Primitives {
     let steps = query.whole("segments") as usize;
+    let has_lines = query.word(PRIMITIVES_NAME) == "on";
     let mut drawn = Primitives { colours: Some(Colours::Linear(Vec::new())), ..Default::default() };
     for piece in pieces {
         match piece.kind {
             Kind::Surface => {}
-            Kind::Tube | Kind::Ribbon => line(&mut drawn, piece, steps),
-            Kind::Polygon => polygons(&mut drawn, piece, steps),
+            Kind::Tube | Kind::Ribbon if has_lines => line(&mut drawn, piece, steps),
+            // What has no centre line is no line either.
+            Kind::Tube | Kind::Ribbon if piece.shape.centreline(0.0).is_none() => {}
+            Kind::Tube => polygons(&mut drawn, piece, [steps, RING]),
+            Kind::Ribbon => polygons(&mut drawn, piece, [steps, 1]),
+            Kind::Polygon => polygons(&mut drawn, piece, [steps; 2]),
         }
     }
     drawn
@@ -45,16 +54,18 @@ fn line(drawn: &mut Primitives, piece: &Piece, steps: usize) {
     }
 }
 
-fn polygons(drawn: &mut Primitives, piece: &Piece, steps: usize) {
-    let (first, side) = (drawn.positions.len() as u32, steps as u32 + 1);
-    for i in 0..side * side {
-        let uv = DVec2::new(f64::from(i % side), f64::from(i / side)) / steps as f64;
+/// Two triangles for each of `steps` along u and v.
+fn polygons(drawn: &mut Primitives, piece: &Piece, steps: [usize; 2]) {
+    let (first, side, rows) = (drawn.positions.len() as u32, steps[0] as u32 + 1, steps[1] as u32 + 1);
+    for i in 0..side * rows {
+        let uv = DVec2::new(f64::from(i % side), f64::from(i / side))
+            / DVec2::new(steps[0] as f64, steps[1] as f64);
         let point = piece.shape.at(uv).point;
         let radius = if uv.x == 1.0 { piece.seam } else { 0.0 };
         let corner = CentrelinePoint { position: point.position, direction: point.normal, radius };
         vertex(drawn, corner, piece.texture.at(&point));
     }
-    let corners = (0..side * (side - 1)).filter(|i| i % side + 1 < side).map(|i| first + i);
+    let corners = (0..side * (rows - 1)).filter(|i| i % side + 1 < side).map(|i| first + i);
     drawn.triangles.extend(corners.flat_map(|a| [[a, a + 1, a + side], [a + 1, a + side + 1, a + side]]));
 }
 

@@ -114,6 +114,7 @@ impl<'a> Query<'a> {
             "checker" => Pattern::Checker,
             "stripes" => Pattern::Stripes,
             "zone" => Pattern::Zone,
+            "gaussian" => Pattern::Gaussian,
             "noise" => Pattern::Noise,
             _ => Pattern::Plain,
         }

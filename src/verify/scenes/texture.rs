@@ -17,6 +17,8 @@ pub enum Pattern {
     Stripes,
     /// Zone plate: rings around the origin, `cos(π f d²)`, whose frequency at distance d is `f d`.
     Zone,
+    /// A Gaussian around the origin, with a σ of 1 / f.
+    Gaussian,
     /// Smooth solid noise: two octaves.
     Noise,
     /// One colour.
@@ -28,7 +30,7 @@ pub enum Pattern {
 pub struct Texture {
     /// Pattern of the colours.
     pub pattern: Pattern,
-    /// Periods per unit length; of the zone plate, at distance 1.
+    /// Periods per unit length; of the zone plate, at distance 1; of the Gaussian, 1 / σ.
     pub frequency: f64,
     /// The two colours; `Plain` is the first.
     pub colours: [Rgb; 2],
@@ -55,6 +57,7 @@ impl Texture {
             Pattern::Checker => 1.0 - ((2.0 * at.x).floor() + (2.0 * at.y).floor()).rem_euclid(2.0),
             Pattern::Stripes => 0.5 + 0.5 * (TAU * at.x).sin(),
             Pattern::Zone => 0.5 + 0.5 * (PI * at.dot(point.chart)).cos(),
+            Pattern::Gaussian => (-0.5 * at.length_squared()).exp(),
             Pattern::Noise => {
                 let p = 2.0 * self.frequency * point.position;
                 (2.0 * noise(p) + noise(2.0 * p)) / 3.0
@@ -115,6 +118,9 @@ mod tests {
         assert_eq!(zone.at(&point(0.0, 0.0))[0], 1.0);
         assert!((zone.at(&point(0.6, 0.8))[0] - 1.0).abs() < 1e-12);
         assert!((zone.at(&point(1.01, 0.0))[0] - (0.5 + 0.5 * (PI * 50.0 * 1.0201).cos())).abs() < 1e-12);
+        let gaussian = texture(Pattern::Gaussian, 2.0);
+        assert_eq!(gaussian.at(&point(0.0, 0.0))[0], 1.0);
+        assert!((gaussian.at(&point(0.3, 0.4))[0] - (-0.5f64).exp()).abs() < 1e-12);
         assert_eq!(texture(Pattern::Plain, 1.0).at(&point(0.3, 0.3)), [0.0; 3]);
     }
 

@@ -30,6 +30,12 @@ pub fn bumpy_sphere(query: &Query) -> Vec<Piece> {
     one(Bumpy, query)
 }
 
+/// A flat disc, black and white.
+pub fn disc(query: &Query) -> Vec<Piece> {
+    let face = Face { centre: DVec3::ZERO, axes: [DVec3::Z, DVec3::X], region: Region::Disc(1.0) };
+    vec![piece(face, Texture { colours: [[0.0; 3], [1.0; 3]], ..texture(query) })]
+}
+
 /// A torus.
 pub fn torus(query: &Query) -> Vec<Piece> {
     one(Torus { centre: DVec3::ZERO, major: 1.0, minor: query.number("minor") }, query)

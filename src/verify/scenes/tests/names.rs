@@ -1,9 +1,9 @@
 //! Names and parameters of scenes.
 
 use crate::Error;
-use crate::geometry::Camera;
+use crate::geometry::{Camera, Colours};
 use crate::verify::scenes::query::Query;
-use crate::verify::scenes::{SAMPLING, bumpy_sphere, camera, is_scene, list, open, surface};
+use crate::verify::scenes::{SAMPLING, bumpy_sphere, camera, is_scene, list, model, open, surface};
 
 #[test]
 fn every_listed_scene_opens_in_morton_order() {
@@ -76,7 +76,7 @@ fn cameras_show_their_scenes() {
 #[test]
 fn mistakes_are_answered_with_what_exists() {
     for (text, expected) in [
-        ("scene:teapot", "give scene:bumpy-sphere, scene:sphere, scene:torus"),
+        ("scene:teapot", "give scene:bumpy-sphere, scene:sphere, scene:disc, scene:torus"),
         (
             "scene:sphere?minor=0.3",
             "no parameter `minor`: give points, seed, sampler, noise, scans, outliers, albedo or frequency",
@@ -97,4 +97,25 @@ fn mistakes_are_answered_with_what_exists() {
         );
         assert_eq!(surface(text).err().unwrap().to_string(), error.to_string());
     }
+}
+
+#[test]
+fn tubes_and_ribbons_are_lines_or_triangles() {
+    let primitives =
+        |value| model(&format!("scene:tree?depth=0&segments=12&primitives={value}")).unwrap().primitives;
+    // A branch and six leaves.
+    let lines = primitives("on");
+    assert_eq!((lines.tubes.len(), lines.ribbons.len(), lines.triangles.len()), (12, 6 * 12, 0));
+    let triangles = primitives("triangles");
+    assert_eq!((triangles.tubes.len(), triangles.ribbons.len()), (0, 0));
+    assert_eq!(triangles.triangles.len(), 12 * 3 * 2 + 6 * 12 * 2);
+    // Scenes without the parameter have surfels alone.
+    assert_eq!(model("scene:sphere?points=10").unwrap().surfels.len(), 10);
+}
+
+#[test]
+fn a_single_surfel_of_the_disc_is_the_disc() {
+    let disc = open("scene:disc?points=1").unwrap();
+    assert_eq!((disc.len(), disc.radii[0], disc.colours), (1, 1.0, Some(Colours::Linear(vec![[1.0; 3]]))));
+    assert_eq!(open("scene:disc?points=50").unwrap().len(), 50);
 }
