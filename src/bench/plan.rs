@@ -2,7 +2,7 @@
 
 use super::engine::Engine;
 use super::place::Place;
-use super::record::{self, Axes, Experiment, Run, RunSettings};
+use super::record::{self, Axes, Experiment, Implementation, Run, RunSettings};
 use crate::settings::methods::Method;
 use crate::settings::{Choice, Settings};
 use crate::verify::scenes::Viewpoint;
@@ -26,6 +26,8 @@ pub struct Plan {
     pub size: [u32; 2],
     /// The engine.
     pub engine: Engine,
+    /// The preset whose name the run has; that nearest to its settings if `None`.
+    pub method: Option<Method>,
     /// The settings.
     pub settings: Settings,
     /// Where the picture is taken from.
@@ -62,11 +64,6 @@ impl Plan {
         self.scene == other.scene && what(self) == what(other) && self.paper_item == other.paper_item
     }
 
-    /// Whether the settings are those of a method, but for the shading and its numbers.
-    pub(super) fn is_of(&self, method: &Method) -> bool {
-        self.settings.splatting == method.splatting && self.settings.pull_push == method.pull_push
-    }
-
     /// Whether a run is this plan's, measured or refused.
     pub fn is_done_by(&self, run: &Run) -> bool {
         let place = |from: &record::Viewpoint| {
@@ -79,14 +76,24 @@ impl Plan {
             && (&self.scene, self.points, self.size) == (&run.scene, run.points, run.size)
             && (self.radius_scale, RunSettings::of(&self.settings))
                 == (run.radius_scale, run.settings.clone())
-            && self.engine.implementation(&self.settings) == run.implementation
+            && self.implementation() == run.implementation
             && run.viewpoint.as_ref().is_none_or(place)
     }
 
     /// The same run by a method with its own settings; the shading remains.
     pub(super) fn by(&self, method: &Method) -> Self {
         let settings = Settings { shading: self.settings.shading, ..method.settings() };
-        Self { settings, ..self.clone() }
+        Self { settings, method: Some(*method), ..self.clone() }
+    }
+
+    /// Name in the results.
+    pub fn implementation(&self) -> Implementation {
+        match (&self.method, self.engine) {
+            (Some(method), Engine::Splatting { .. }) => {
+                self.engine.implementation_from(method, &self.settings)
+            }
+            _ => self.engine.implementation(&self.settings),
+        }
     }
 }
 

@@ -500,7 +500,7 @@ fn blank(plan: &Plan, from: Option<Viewpoint>) -> Run {
         radius_scale: plan.radius_scale,
         size: plan.size,
         viewpoint,
-        implementation: plan.engine.implementation(&plan.settings),
+        implementation: plan.implementation(),
         settings: RunSettings::of(&plan.settings),
         refused: None,
         time: None::<Time>,

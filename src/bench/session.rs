@@ -138,7 +138,7 @@ impl Measuring<'_> {
             effort: time_limit::effort(suite.effort(), plans.len(), until),
             until,
         };
-        let mut runner = Runner::new(of_suite, inputs.all().cloned().collect());
+        let mut runner = Runner::new(of_suite, inputs.all().collect());
         let mut estimates = Estimates::default();
         for plans in time_limit::groups(plans, until.is_some()) {
             if self.has(&plans) {

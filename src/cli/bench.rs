@@ -10,6 +10,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use surfel::bench::command::quoted;
+use surfel::bench::papers::models::Models;
 use surfel::bench::record::{FORMAT, Provenance, Session, schema};
 use surfel::bench::subject::Subject;
 use surfel::bench::suites::UserInputs;
@@ -213,6 +214,7 @@ fn command(args: &Bench, suites: &[Suite]) -> String {
     option("suite", list(named.map(|suite| suite.name().to_owned()).collect()));
     option("scans", path(&args.scans));
     option("minutes", args.minutes.map(|limit| format!("{}", limit.as_secs_f64() / 60.0)));
+    option("models", path(&args.models));
     option("device", args.device.device.clone());
     option("device-limits", path(&args.device.device_limits));
     words.extend(args.device.validate.then(|| "--validate".into()));
@@ -233,6 +235,13 @@ fn device(args: &Bench) -> Result<Option<Arc<Device>>> {
 
 /// What the options ask to measure.
 fn wanted(args: &Bench, suites: Vec<Suite>, progress: &dyn Progress) -> Result<SessionOptions> {
+    let models = match &args.models {
+        Some(_) if !suites.contains(&Suite::Papers) => {
+            return Err(Error::Usage("--models is of the suite papers: give --suite papers".into()));
+        }
+        Some(folder) => Models::open(folder, progress)?,
+        None => Models::default(),
+    };
     let device = device(args)?;
     let scans = scans(args, &suites, progress)?;
     Ok(SessionOptions {
@@ -243,6 +252,7 @@ fn wanted(args: &Bench, suites: Vec<Suite>, progress: &dyn Progress) -> Result<S
         command: command(args, &suites),
         suites,
         inputs: UserInputs {
+            models,
             subjects: args
                 .inputs
                 .iter()

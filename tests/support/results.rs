@@ -300,7 +300,10 @@ fn papers() -> Vec<Run> {
     let single = of(Experiment::Claims, "three-passes", 100_000, 10.0, 0.06);
     let mut three = of(Experiment::Claims, "three-passes", 100_000, 25.0, 0.04);
     three.ratio = Some(Statistics { median: 2.5, min: 2.25, max: 3.0, interval: Some([2.25, 3.0]) });
-    let row = of(Experiment::PaperTables, "zwicker2004 table 1", 300_000, 100.0, 0.04);
+    let mut row = of(Experiment::PaperTables, "zwicker2004 table 1", 300_000, 100.0, 0.04);
+    row.implementation.method = "perspective-ewa-paper".into();
+    row.scene = "scene:bumpy-sphere".into();
+    row.settings.shading = "color".into();
     vec![axis, ray, single, three, row]
 }
 

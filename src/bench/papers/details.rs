@@ -1,4 +1,4 @@
-//! Metrics of single effects. All but the overlap compare a picture with the truth, over black, by the luma of linear
+//! Metrics of single effects. All but the overlap and the covered pixels compare a picture with the truth, over black, by the luma of linear
 //! light.
 
 use crate::bench::error_terms::WHOLE;
@@ -18,6 +18,12 @@ pub const SHARPNESS: &str = "sharpness";
 /// Smooth errors have none; borders between splats have.
 pub const FACETS: &str = "facets";
 
+/// Distance, px, between the middles of the brightest parts: the mean positions of the pixels above 0.9 of each picture's largest luma.
+pub const PEAK: &str = "peak";
+
+/// Pixels that the picture covers, at least in part.
+pub const COVERED: &str = "covered";
+
 /// Pixels well inside the surface whose depth exceeds the truth's by more than 1 %.
 pub const LEAKS: &str = "leaks";
 
@@ -25,10 +31,17 @@ pub const LEAKS: &str = "leaks";
 pub fn of(pair: &Pair<'_>) -> Vec<(&'static str, f64)> {
     let image = Image::new(pair);
     let gaps = (0..pair.pixels()).filter(|&i| image.inside_truth[i] && !covers(pair.picture(), i)).count();
-    let others = [(UNEVENNESS, image.unevenness()), (SHARPNESS, image.sharpness()), (FACETS, image.facets())];
+    let peak = image.peak();
+    let others = [
+        (PEAK, peak),
+        (UNEVENNESS, image.unevenness()),
+        (SHARPNESS, image.sharpness()),
+        (FACETS, image.facets()),
+    ];
     let known = others.into_iter().filter_map(|(name, value)| Some((name, value?)));
     let leaks = leaks(pair, &image).map(|leaks| (LEAKS, leaks as f64));
-    std::iter::once((GAPS, gaps as f64)).chain(leaks).chain(known).collect()
+    let covered = (0..pair.pixels()).filter(|&i| covers(pair.picture(), i)).count();
+    [(GAPS, gaps as f64), (COVERED, covered as f64)].into_iter().chain(leaks).chain(known).collect()
 }
 
 /// None without depths.
@@ -72,6 +85,19 @@ impl Image {
         let rows = (1..height.max(1) - 1).map(move |y| y * width);
         let all = rows.flat_map(move |row| (1..width.max(1) - 1).map(move |x| row + x));
         all.filter(move |&i| [i, i - 1, i + 1, i - width, i + width].into_iter().all(|k| inside[k]))
+    }
+
+    fn peak(&self) -> Option<f64> {
+        let middle = |luma: &[f64]| {
+            let largest = luma.iter().copied().fold(0.0, f64::max);
+            let bright = || (0..luma.len()).filter(|&i| luma[i] > 0.9 * largest);
+            let sum = bright()
+                .fold([0.0; 2], |[x, y], i| [x + (i % self.width) as f64, y + (i / self.width) as f64]);
+            let count = bright().count() as f64;
+            (count > 0.0).then(|| sum.map(|sum| sum / count))
+        };
+        let ([x, y], [u, v]) = (middle(&self.picture)?, middle(&self.truth)?);
+        Some((x - u).hypot(y - v))
     }
 
     fn unevenness(&self) -> Option<f64> {
@@ -123,6 +149,13 @@ mod tests {
         assert_eq!(value(GAPS, &truth, &truth), 0.0);
         let holed = picture(|x, y| (0.5, if y == 3 && x > 4 { 0.0 } else { 1.0 }));
         assert_eq!(value(GAPS, &holed, &truth), 2.0);
+    }
+
+    #[test]
+    fn the_peak_is_where_it_is_brightest() {
+        let bright = |at: usize| picture(move |x, y| (if (x, y) == (at, 3) { 1.0 } else { 0.5 }, 1.0));
+        assert_eq!(value(PEAK, &bright(6), &bright(2)), 4.0);
+        assert_eq!(value(COVERED, &bright(6), &bright(2)), 64.0);
     }
 
     #[test]

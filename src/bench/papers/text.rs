@@ -1,9 +1,11 @@
 //! The papers' part of the results on a terminal.
 
-use super::claims::{self, Claim};
-use super::effects::{self, Difference, Effect, value};
+use super::costs::{self, Cost, Outcome};
+use super::effects::{self, Effect};
+use super::models::Model;
+use super::relation::{Metric, letter};
 use super::runs;
-use super::tables::{self, Row, Table, Unit};
+use super::tables::{self, Row, Table};
 use crate::bench::format;
 use crate::bench::record::{Experiment, Run, Session};
 use crate::bench::table::WIDTH;
@@ -12,12 +14,17 @@ use std::fmt::Write;
 /// Results of the papers' items in a session; empty if there are none.
 pub fn text(session: &Session) -> String {
     let mut text = String::new();
-    for effect in &effects::ALL {
+    for effect in effects::all() {
         effect_lines(&mut text, effect, &runs(&session.runs, Experiment::Effects, effect.name));
     }
-    claim_lines(&mut text, session);
+    cost_lines(&mut text, session);
     for table in &tables::ALL {
-        table_lines(&mut text, table, &runs(&session.runs, Experiment::PaperTables, table.source), session);
+        table_lines(
+            &mut text,
+            table,
+            &runs(&session.runs, Experiment::PaperTables, &table.source()),
+            session,
+        );
     }
     text.lines().map(folded).collect()
 }
@@ -44,110 +51,175 @@ fn effect_lines(text: &mut String, effect: &Effect, runs: &[&Run]) {
     if runs.is_empty() {
         return;
     }
-    let _ = writeln!(text, "\n{} · {}", effect.title, effect.source);
-    for run in runs {
-        let metrics = effect.metrics.iter().filter_map(|(name, label)| {
-            Some(format!("{label} {}", format::significant(value(run, name)?, 3)))
+    let _ = writeln!(text, "\n{} · {}", effect.title, effect.name);
+    for (i, run) in runs.iter().enumerate() {
+        let metrics = effect.metrics.iter().map(|metric| {
+            let value = metric.of(run).map_or("not measured".into(), |value| format::significant(value, 3));
+            format!("{} {value}", metric.label)
         });
-        let results = metrics.chain(run.refused.clone()).collect::<Vec<_>>().join(", ");
-        let _ = writeln!(text, "  {:<52}  {results}", run_label(run, runs));
+        let results = match &run.refused {
+            Some(why) => why.clone(),
+            None => metrics.collect::<Vec<_>>().join(", "),
+        };
+        let _ = writeln!(text, "  {} {:<52}  {results}", letter(i), run_label(run, runs));
     }
-    for (words, holds) in expectations(effect, runs) {
-        let _ =
-            writeln!(text, "  {} {words}", if holds { "as in the paper:" } else { "NOT as in the paper:" });
+    for expected in effect.expected {
+        if let (Some(holds), Some(words)) = (expected.relation.holds(runs), expected.relation.words(runs)) {
+            let _ = writeln!(text, "  {}: {words}; {}", as_in_the_paper(holds), expected.says);
+        }
+    }
+    for claim in effect.claims {
+        if let (Some(holds), Some(words)) = (claim.holds(runs), claim.words(runs)) {
+            let _ =
+                writeln!(text, "  beyond the papers{}: {words}", if holds { "" } else { ", does NOT hold" });
+        }
+    }
+    for words in effect.against(runs) {
+        let _ = writeln!(text, "  against it: {words}");
     }
 }
 
-/// What distinguishes a run from the others: implementation, settings and scene parameters in which they differ.
+fn as_in_the_paper(holds: bool) -> &'static str {
+    if holds { "as in the paper" } else { "NOT as in the paper" }
+}
+
+impl Effect {
+    /// Metrics by which the side that should be better is worse.
+    pub(in crate::bench) fn against(&self, runs: &[&Run]) -> Vec<String> {
+        let expected = self.expected.iter().map(|expected| &expected.relation);
+        let relations: Vec<_> = expected.chain(self.claims).collect();
+        // What a relation is about is decided there.
+        let decided =
+            |metric: &Metric| relations.iter().any(|relation| relation.metric().name == metric.name);
+        let others: Vec<Metric> = self.metrics.iter().filter(|metric| !decided(metric)).copied().collect();
+        let mut all: Vec<String> =
+            relations.iter().flat_map(|relation| relation.against(&others, runs)).collect();
+        all.sort();
+        all.dedup();
+        all
+    }
+}
+
+/// What distinguishes a run from the others: implementation, settings that differ from its preset's, and scene parameters in which they differ.
 pub(in crate::bench) fn run_label(run: &Run, runs: &[&Run]) -> String {
     let mut words = vec![run.implementation.label()];
-    let settings = format::run_settings(run, format::differing_settings(runs.iter().copied()));
-    words.extend(Some(settings).filter(|text| !text.is_empty()));
+    words.extend(Some(format::options_among(run, runs)).filter(|text| !text.is_empty()));
     if runs.iter().any(|other| other.scene != run.scene) {
-        words.extend(run.scene.split_once('?').map(|(_, parameters)| parameters.to_owned()));
+        let parameters = run.scene.split_once('?').map(|(_, parameters)| parameters.to_owned());
+        words.push(parameters.unwrap_or_else(|| format::scene(&run.scene).to_owned()));
     }
     words.join(", ")
 }
 
-/// The expectations of an effect, in words and numbers, and whether the runs meet them.
-pub(in crate::bench) fn expectations(effect: &Effect, runs: &[&Run]) -> Vec<(String, bool)> {
-    let texts = effect.expected.iter().filter_map(|expected| {
-        let holds = expected.holds(runs)?;
-        let [more, less] = [expected.more, expected.less].map(|i| runs.get(i).copied());
-        let (more, less) = (more?, less?);
-        let [a, b] = [more, less].map(|run| value(run, expected.metric).unwrap_or_default());
-        let label = effect.metrics.iter().find(|(name, _)| *name == expected.metric);
-        let label = label.map_or(expected.metric, |(_, label)| label);
-        let [a, b] = [a, b].map(|number| format::significant(number, 3));
-        let difference = match expected.by {
-            Difference::Times(factor) => format!("{} times", format::significant(factor, 3)),
-            Difference::Plus(amount) => format!("{} more", format::significant(amount, 3)),
-        };
-        let [more, less] = [more, less].map(|run| run_label(run, runs));
-        Some((format!("{label} {a} of {more} against {b} of {less} (at least {difference})"), holds))
-    });
-    texts.collect()
-}
-
-fn claim_lines(text: &mut String, session: &Session) {
-    let mut title = Some("\ncosts: ratio of times, alternating frames: median (min–max)");
-    for claim in &claims::ALL {
-        let runs = runs(&session.runs, Experiment::Claims, claim.name);
+fn cost_lines(text: &mut String, session: &Session) {
+    let mut title = Some("\ncosts: ratio of times, alternating frames: median (95 % interval)");
+    for cost in &costs::ALL {
+        let runs = runs(&session.runs, Experiment::Claims, cost.name);
         let [_, dearer] = runs[..] else { continue };
         title.take().into_iter().for_each(|title| {
             let _ = writeln!(text, "{title}");
         });
-        let _ = writeln!(text, "  {:<66}  {:<22}  {}", claim.title, ratio(dearer), published(claim));
+        let _ = writeln!(text, "  {:<66}  {:<22}  {}", cost.title, ratio(dearer), outcome(cost, dearer));
     }
 }
 
-/// The ratio of times, with its range.
+/// The ratio of times, with the 95 % interval of its median.
 pub(in crate::bench) fn ratio(run: &Run) -> String {
     let number = |value| format::significant(value, 3);
     match (&run.refused, run.ratio) {
         (Some(why), _) => format!("refused: {why}"),
         (_, Some(ratio)) => {
-            format!("{} ({}–{})", number(ratio.median), number(ratio.min), number(ratio.max))
+            let [low, high] = ratio.interval.unwrap_or([ratio.min, ratio.max]);
+            format!("{} ({}–{})", number(ratio.median), number(low), number(high))
         }
         _ => String::new(),
     }
 }
 
-/// The published ratio and statement.
-pub(in crate::bench) fn published(claim: &Claim) -> String {
-    let numbers = claim.published.map(|[least, most]| format!("{least} to {most}, "));
-    format!("{}: {}{}", claim.source, numbers.unwrap_or_default(), claim.words)
+/// Whether the ratio is as published, and what is.
+fn outcome(cost: &Cost, run: &Run) -> String {
+    let note = if cost.note.is_empty() { String::new() } else { format!("; {}", cost.note) };
+    let Some(says) = cost.says else { return format!("beyond the papers{note}") };
+    let outcome = match cost.outcome(run) {
+        Some(Outcome::AsPublished) => "as in the paper",
+        Some(Outcome::NotAsPublished) => "NOT as in the paper",
+        Some(Outcome::Open) => "open: the interval has an end on either side",
+        None => "not measured",
+    };
+    format!("{outcome}: {}: {}{note}", says.ratio, says.quotation)
 }
 
 fn table_lines(text: &mut String, table: &Table, runs: &[&Run], session: &Session) {
     if runs.is_empty() {
         return;
     }
-    let Table { source, hardware, unit, note, .. } = table;
-    let _ =
-        writeln!(text, "\n{source} · {} · there {hardware} · here {}", unit.name(), format::machine(session));
+    let Table { hardware, unit, note, .. } = table;
+    let (source, machine) = (table.source(), format::machine(session));
+    let _ = writeln!(text, "\n{source} · {} · there {hardware} · here {machine}", unit.name());
     let _ = writeln!(text, "  {note}");
     let columns = table.columns.iter().map(|name| format!("{name:>12}")).collect::<String>();
     let _ =
         writeln!(text, "  {:<32}{:>10}{:>12}{columns}{:>18}  here by", "model", "points", "size px", "here");
     for row in table.rows {
         let numbers = row.published.iter().map(|number| format!("{number:>12}")).collect::<String>();
-        let (points, size) = (format::count(row.points), format::size(row.size));
-        let [here, by] = row_result(row, *unit, runs);
+        let (points, size) = (points(row), format::size(row.size));
+        let [here, by] = row_result(table, row, runs);
         let _ = writeln!(text, "  {:<32}{points:>10}{size:>12}{numbers}{here:>18}  {by}", row.model);
+    }
+    for (quotation, words, holds) in table.statements(runs) {
+        let _ = writeln!(text, "  {}: {words}; {quotation}", as_in_the_paper(holds));
+    }
+    for model in not_given(table, runs) {
+        let _ = writeln!(text, "  {}", model_words(model));
     }
 }
 
+/// Number of points of a row.
+pub(in crate::bench) fn points(row: &Row) -> String {
+    match row.points {
+        [one] => format::count(*one),
+        [first, .., last] => format!("{}–{}", format::count(*first), format::count(*last)),
+        [] => String::new(),
+    }
+}
+
+/// Models of a table whose rows a built-in scene replaces.
+pub(in crate::bench) fn not_given(table: &Table, runs: &[&Run]) -> Vec<&'static Model> {
+    let mut models: Vec<&'static Model> = Vec::new();
+    for model in table.rows.iter().filter_map(|row| row.model(table.caption)) {
+        let given = runs.iter().any(|run| model.is(&run.scene));
+        if !given && !models.iter().any(|known| known.name == model.name) {
+            models.push(model);
+        }
+    }
+    models
+}
+
+/// How to give a model.
+pub(in crate::bench) fn model_words(model: &Model) -> String {
+    format!(
+        "{} replaced; give {} by --models ({})",
+        model.name,
+        model.files.join(" or "),
+        model.origin.name()
+    )
+}
+
 /// The measured number of a row and its run, or why there is none.
-pub(in crate::bench) fn row_result(row: &Row, unit: Unit, runs: &[&Run]) -> [String; 2] {
+pub(in crate::bench) fn row_result(table: &Table, row: &Row, runs: &[&Run]) -> [String; 2] {
     if let Some(why) = row.missing() {
         return ["".into(), format!("none: {why}")];
     }
-    let Some(run) = row.run(runs) else { return ["".into(), "not measured".into()] };
-    match (&run.refused, unit.format(run)) {
+    let own = row.runs(table.caption, runs);
+    let Some(run) = own.first() else { return ["".into(), "not measured".into()] };
+    match (own.iter().find_map(|run| run.refused.as_ref()), table.unit.format(&own)) {
         (Some(why), _) => ["".into(), format!("refused: {why}")],
         (None, Some(number)) => {
-            [number, format!("{}, {}", run.implementation.label(), format::scene(&run.scene))]
+            // A given file may have other points than the paper's model.
+            let is_other = (row.points.len() == 1 && run.points.abs_diff(row.points[0]) * 200 > run.points)
+                .then(|| format!(" of {} points", format::count(run.points)));
+            let scene = format!("{}{}", format::scene(&run.scene), is_other.unwrap_or_default());
+            [number, format!("{}, {scene}", run.implementation.label())]
         }
         (None, None) => ["".into(), "not timed".into()],
     }

@@ -25,7 +25,7 @@ pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
                 } }
                 @let runs: Vec<_> = session.runs.iter().filter(|run| run.images == Some(index)).collect();
                 figcaption { (words(images, &runs)) }
-                @for run in runs { (page::commands(run)) }
+                (page::commands(&runs))
             }
         }
     }))

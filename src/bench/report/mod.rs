@@ -9,6 +9,7 @@ mod effects;
 mod glossary;
 mod hard;
 mod images;
+mod inventory;
 mod lowpass;
 mod machines;
 mod page;

@@ -2,8 +2,8 @@
 
 use super::plot::{Plot, Style, draw};
 use super::{
-    aliasing, baseline, budget, convergence, effects, glossary, hard, images, lowpass, machines, papers,
-    provenance, scaling, summary, views,
+    aliasing, baseline, budget, convergence, effects, glossary, hard, images, inventory, lowpass, machines,
+    papers, provenance, scaling, summary, views,
 };
 use crate::bench::command;
 use crate::bench::format;
@@ -36,7 +36,7 @@ struct Section {
     content: Content,
 }
 
-const SECTIONS: [Section; 13] = [
+const SECTIONS: [Section; 15] = [
     Section { id: "summary", title: "Summary", content: summary::content },
     Section { id: "budget", title: "Time against error", content: budget::content },
     Section { id: "views", title: "Other views", content: views::content },
@@ -45,8 +45,10 @@ const SECTIONS: [Section; 13] = [
     Section { id: "aliasing", title: "Aliasing", content: aliasing::content },
     Section { id: "scaling", title: "Scaling", content: scaling::content },
     Section { id: "baseline", title: "Baseline", content: baseline::content },
-    Section { id: "effects", title: "Effects of the papers", content: effects::content },
-    Section { id: "papers", title: "Times of the papers", content: papers::content },
+    Section { id: "effects", title: "Figures of the papers", content: effects::of_papers },
+    Section { id: "papers", title: "Costs and times of the papers", content: papers::content },
+    Section { id: "beyond", title: "Beyond the papers", content: effects::beyond },
+    Section { id: "inventory", title: "Every figure and table of the papers", content: inventory::content },
     Section { id: "hard", title: "Hard cases", content: hard::content },
     Section { id: "images", title: "Images", content: images::content },
     Section { id: "provenance", title: "Provenance", content: provenance::content },
@@ -150,6 +152,12 @@ impl<'a> Page<'a> {
         Ok(html! { figure.plot { (PreEscaped(inline)) } })
     }
 
+    /// Id of an item of the papers in a session.
+    pub fn anchor(&self, session: &Session, item: &str) -> String {
+        let place = self.results.sessions.iter().position(|other| std::ptr::eq(other, session));
+        format!("item-{}-{}", place.unwrap_or(0), slug(item))
+    }
+
     /// A name that no other plot has.
     fn free(&self, name: &str) -> String {
         let taken = |name: &String| self.plots.iter().any(|(other, _)| other == name);
@@ -159,15 +167,16 @@ impl<'a> Page<'a> {
     }
 }
 
-/// The commands of a run's picture and exact picture, to be opened.
-pub fn commands(run: &Run) -> Markup {
-    let Some(commands) = command::commands(run) else { return html! {} };
-    html! {
+/// The commands of the runs' pictures and exact pictures, to be opened.
+pub fn commands(runs: &[&Run]) -> Markup {
+    let all = runs.iter().filter_map(|run| command::commands(run)).flatten().flatten();
+    let all = distinct(all);
+    html! { @if !all.is_empty() {
         details.commands {
             summary { "commands" }
-            @for command in commands.into_iter().flatten() { pre { code { (command) } } }
+            @for command in all { pre { code { (command) } } }
         }
-    }
+    } }
 }
 
 /// A page without external resources.

@@ -6,6 +6,7 @@ use crate::bench::plan::{Measurements, Plan};
 use crate::bench::record::Experiment;
 use crate::bench::subject::Subject;
 use crate::settings::Shading;
+use crate::settings::methods::Method;
 use crate::verify::scenes;
 use std::rc::Rc;
 use strum::VariantArray;
@@ -51,7 +52,7 @@ fn densities(scene: &str) -> Vec<Plan> {
         let float64_error = points <= MIDDLE;
         plan.measurements = Measurements { terms: true, float64_error, images, ..Measurements::BOTH };
         let others = Measurements { images: images && scene == "scene:bumpy-sphere", ..Measurements::BOTH };
-        every(plan, others)
+        every(&plan, &Method::ALL, others)
     };
     let shadings = [Shading::Lit, Shading::Colour];
     POINTS.into_iter().flat_map(|points| shadings.map(|shading| (points, shading))).flat_map(each).collect()
@@ -62,5 +63,5 @@ fn views(scene: &str) -> Vec<Plan> {
     let middle = lit(Experiment::Views, scene, MIDDLE);
     let moved = Move::VARIANTS.iter().map(|how| Plan { place: Place::Moved(*how), ..middle.clone() });
     let sized = SIDES.map(|side| Plan { size: [side; 2], ..middle.clone() });
-    moved.chain(sized).flat_map(|plan| every(plan, Measurements::BOTH)).collect()
+    moved.chain(sized).flat_map(|plan| every(&plan, &Method::ALL, Measurements::BOTH)).collect()
 }

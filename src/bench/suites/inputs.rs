@@ -2,6 +2,7 @@
 
 use super::{Suite, every, plan};
 use crate::bench::engine::Engine;
+use crate::bench::papers::models::Models;
 use crate::bench::plan::{Measurements, Plan};
 use crate::bench::record::Experiment;
 use crate::bench::subject::Subject;
@@ -18,27 +19,30 @@ const PICTURED: u64 = 100_000;
 /// Inputs of the user, and how to render them.
 #[derive(Clone, Default)]
 pub struct UserInputs {
+    /// The papers' models, for [`Suite::Papers`].
+    pub models: Models,
     /// Scenes and scans.
     pub subjects: Vec<Rc<Subject>>,
     /// Numbers of points, limited to those of a scan; if empty, from 10⁴ to 10⁶ or to all points of a scan.
     pub points: Vec<u64>,
     /// Width and height, px; 768 × 768 where the surface is known, otherwise 384 × 384.
     pub size: Option<[u32; 2]>,
-    /// The methods; all if empty.
+    /// The methods; if empty, [ours](Method::OWN).
     pub methods: Vec<Method>,
     /// Scans that [`Suite::Quick`], the first one only, and [`Suite::Full`] measure beside built-in scenes.
     pub scans: Vec<Rc<Subject>>,
 }
 
 impl UserInputs {
-    /// All inputs and scans.
-    pub fn all(&self) -> impl Iterator<Item = &Rc<Subject>> {
-        self.subjects.iter().chain(&self.scans)
+    /// All inputs, scans and models.
+    pub fn all(&self) -> impl Iterator<Item = Rc<Subject>> {
+        self.subjects.iter().chain(&self.scans).cloned().chain(self.models.subjects())
     }
 }
 
 /// Time against error of each input, lit and in its own colours, by every method at every density.
 pub(super) fn plans(suite: Suite, inputs: &UserInputs) -> Vec<Plan> {
+    let methods = if inputs.methods.is_empty() { &Method::OWN[..] } else { &inputs.methods };
     let each = |subject: &Rc<Subject>| {
         let densities = densities(subject, &inputs.points);
         let pictured = densities.iter().copied().min_by_key(|points| points.abs_diff(PICTURED));
@@ -50,7 +54,7 @@ pub(super) fn plans(suite: Suite, inputs: &UserInputs) -> Vec<Plan> {
         let all = densities.iter().flat_map(|points| shadings.iter().map(|shading| (*points, *shading)));
         all.flat_map(|(points, shading)| {
             let plan = shown(suite, inputs, subject, points, shading);
-            budget(plan, subject, &inputs.methods, Some(points) == pictured)
+            budget(plan, subject, methods, Some(points) == pictured)
         })
         .collect::<Vec<_>>()
     };
@@ -76,14 +80,12 @@ fn shown(suite: Suite, inputs: &UserInputs, subject: &Subject, points: u64, shad
     plan
 }
 
-/// The plan by `methods`, or by all if there are none, and by the baselines.
+/// The plan by `methods`, and by the baselines.
 fn budget(mut plan: Plan, subject: &Subject, methods: &[Method], images: bool) -> Vec<Plan> {
     let known = subject.surface().is_some();
     let others = Measurements { images, ..Measurements::BOTH };
     plan.measurements = Measurements { terms: known, float64_error: plan.points <= 100_000, ..others };
-    let wanted = |plan: &Plan| methods.is_empty() || methods.iter().any(|method| plan.is_of(method));
-    let mut plans = every(plan, others);
-    plans.retain(|plan| plan.engine != Engine::DEFAULT || wanted(plan));
+    let mut plans = every(&plan, methods, others);
     if !known {
         // Points of one pixel have no reference of their own, and there is nothing to trace.
         plans.retain(|plan| plan.engine != Engine::Traced);

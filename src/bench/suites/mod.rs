@@ -21,7 +21,7 @@ use super::place::Place;
 use super::plan::{Measurements, Plan};
 use super::record::Experiment;
 use super::stopwatch::Effort;
-use crate::settings::methods::{Method, perspective_ewa};
+use crate::settings::methods::{Method, perspective_ewa, pull_push};
 use crate::settings::{Choice, Settings, Shading, Widen};
 use crate::verify::baseline::Kind;
 use crate::verify::scenes;
@@ -54,7 +54,7 @@ pub enum Suite {
     Scaling,
     /// Every engine, relative to the CPU baseline.
     Baseline,
-    /// Effects, costs and tables of the papers.
+    /// Figures, costs and tables of the papers, by presets as published; and our claims beyond them.
     Papers,
     /// Inputs of the user.
     Inputs,
@@ -75,7 +75,7 @@ impl Suite {
             Self::Hard => Vec::new(),
             Self::Scaling => scaling::plans(),
             Self::Baseline => baseline::plans(),
-            Self::Papers => papers::plans(),
+            Self::Papers => papers::plans(&inputs.models),
             Self::Inputs => inputs::plans(Suite::Inputs, inputs),
         }
     }
@@ -118,6 +118,7 @@ pub(super) fn plan(suite: Suite, experiment: Experiment, scene: &str, points: u6
         radius_scale: 1.0,
         size,
         engine: Engine::DEFAULT,
+        method: None,
         settings: Settings { shading, ..Default::default() },
         place: Place::Own,
         measurements: Measurements::BOTH,
@@ -125,21 +126,27 @@ pub(super) fn plan(suite: Suite, experiment: Experiment, scene: &str, points: u6
     }
 }
 
-/// The same plan by every other method, each with its own settings.
+/// The same plan by every other method, each with its own settings; of those as published, by pull–push alone.
 fn methods(plan: &Plan) -> impl Iterator<Item = Plan> + use<> {
     let plan = plan.clone();
-    let others = Method::ALL.into_iter().filter(|method| *method != perspective_ewa::METHOD);
+    let others = Method::OWN.into_iter().chain([pull_push::PAPER]);
+    let others = others.filter(|method| *method != perspective_ewa::METHOD);
     others.map(move |method| plan.by(&method))
 }
 
-/// The plan, the same without a low-pass filter, and by every other method and baseline, which measure time, error and `others`.
-fn every(plan: Plan, others: Measurements) -> Vec<Plan> {
-    let others = Measurements { time: true, error: true, ..others };
-    let mut sharp = Plan { measurements: Measurements::BOTH, ..plan.clone() };
-    sharp.settings.lowpass = 0.0;
-    let methods: Vec<_> = methods(&plan).map(|plan| Plan { measurements: others, ..plan }).collect();
-    let baselines = baselines(&plan);
-    [plan, sharp].into_iter().chain(methods).chain(baselines).collect()
+/// The plan by `methods` and by every baseline. The default method keeps the plan's measurements, and renders without a low-pass filter, too; the
+/// other methods measure `others`, the rest time and error.
+fn every(plan: &Plan, methods: &[Method], others: Measurements) -> Vec<Plan> {
+    let measured = |measurements, plan: Plan| Plan { measurements, ..plan };
+    let by = |method: &Method| match *method == perspective_ewa::METHOD {
+        true => {
+            let mut sharp = measured(Measurements::BOTH, plan.by(method));
+            sharp.settings.lowpass = 0.0;
+            vec![plan.by(method), sharp]
+        }
+        false => vec![measured(others, plan.by(method))],
+    };
+    methods.iter().flat_map(by).chain(baselines(plan)).collect()
 }
 
 /// Time and error of every baseline. Ray tracing takes seconds a frame: the one that is compared is timed.

@@ -1,10 +1,12 @@
-//! Effects that the papers show, costs that they state, and times that they measured.
+//! Effects that the papers show, costs that they state, and times that they measured; beside them, what we claim beyond them.
 
-use crate::bench::papers::{claims, effects, tables};
+use crate::bench::papers::models::Models;
+use crate::bench::papers::{costs, effects, tables};
 use crate::bench::plan::Plan;
 
-pub(super) fn plans() -> Vec<Plan> {
-    let effects = effects::ALL.iter().flat_map(|effect| effect.plans());
-    let claims = claims::ALL.iter().flat_map(|claim| claim.plans());
-    effects.chain(claims).chain(tables::ALL.iter().flat_map(|table| table.plans())).collect()
+/// All items. Of the papers' models, those that are given.
+pub(super) fn plans(models: &Models) -> Vec<Plan> {
+    let effects = effects::all().flat_map(|effect| effect.plans(models));
+    let costs = costs::ALL.iter().flat_map(|cost| cost.plans());
+    effects.chain(costs).chain(tables::ALL.iter().flat_map(|table| table.plans(models))).collect()
 }

@@ -4,7 +4,7 @@ use super::{Suite, aliasing, baselines, every, lowpass, plan};
 use crate::bench::plan::{Measurements, Plan};
 use crate::bench::record::Experiment;
 use crate::bench::subject::Subject;
-use crate::settings::methods::pull_push;
+use crate::settings::methods::{Method, pull_push};
 use crate::settings::{Settings, Shading};
 use std::rc::Rc;
 
@@ -36,7 +36,7 @@ fn scene(name: &str, shading: Shading, by_all: bool) -> Vec<Plan> {
         plan.measurements =
             Measurements { terms: few, float64_error: few, images: points == MIDDLE, ..Measurements::BOTH };
         match points {
-            MIDDLE if by_all => every(plan, Measurements::BOTH),
+            MIDDLE if by_all => every(&plan, &Method::OWN, Measurements::BOTH),
             MIDDLE => some(&plan).into_iter().chain(baselines(&plan).into_iter().last()).collect(),
             _ => some(&plan),
         }
@@ -61,7 +61,7 @@ fn of_scan(scan: &Subject) -> Vec<Plan> {
     plan.settings.shading = Shading::Lit;
     plan.measurements = Measurements { images: true, ..Measurements::BOTH };
     if scan.surface().is_some() {
-        every(plan, Measurements::BOTH)
+        every(&plan, &Method::OWN, Measurements::BOTH)
     } else {
         vec![plan.clone(), plan.by(&pull_push::METHOD)]
     }

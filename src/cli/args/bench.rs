@@ -21,7 +21,7 @@ pub struct Bench {
     /// Numbers of points of INPUT [default: from 10000 to 1000000, at most all]
     #[arg(long, value_name = "N,…", value_delimiter = ',', requires = "inputs", value_parser = clap::value_parser!(u64).range(1..))]
     pub points: Vec<u64>,
-    /// Methods that render INPUT [default: all]
+    /// Methods that render INPUT [default: all but those as published]
     #[arg(long, value_name = "METHOD,…", value_delimiter = ',', requires = "inputs", value_parser = method())]
     pub method: Vec<Method>,
     /// Size of INPUT's pictures, px [default: 768x768; 384x384 without triangles]
@@ -33,6 +33,9 @@ pub struct Bench {
     /// Folder of scans that quick, the first one by name only, and full measure beside the built-in scenes
     #[arg(long, value_name = "DIR")]
     pub scans: Option<PathBuf>,
+    /// Folder with models of the papers, for --suite papers: files such as dragon_vrip.ply, by their names
+    #[arg(long, value_name = "DIR", requires = "suite")]
+    pub models: Option<PathBuf>,
     /// Time for all measurements, minutes: leaves out runs of the most points and pixels that it does not suffice for [default: no limit]
     #[arg(long, value_name = "N", value_parser = minutes)]
     pub minutes: Option<Duration>,
