@@ -60,7 +60,11 @@ impl LoadedEngine for TracedEngine {
     fn picture(&mut self, camera: &Camera, settings: &Settings) -> Result<Picture> {
         let (begin, spent) = (Instant::now(), ProcessTime::now());
         let picture = self.render(camera, settings)?;
-        let once = |seconds: f64| Statistics::of(&[1e3 * seconds]).unwrap_or_default();
+        // One frame has no interval.
+        let once = |seconds: f64| Statistics {
+            interval: None,
+            ..Statistics::of(&[1e3 * seconds]).unwrap_or_default()
+        };
         self.time = Some(Time {
             clock: Clock::Cpu,
             frames: 1,

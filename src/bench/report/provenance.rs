@@ -3,7 +3,7 @@
 use super::page::Page;
 use crate::bench::format;
 use crate::bench::group::distinct;
-use crate::bench::record::{Provenance, Run, Session};
+use crate::bench::record::{Against, Provenance, Run, Session};
 use crate::settings::Choice;
 use maud::{Markup, html};
 use std::collections::BTreeSet;
@@ -76,19 +76,30 @@ fn frames(runs: &[Run]) -> String {
     )
 }
 
+/// What runs are compared with: exact pictures, their own references, or both.
 fn truth(runs: &[Run]) -> String {
-    let errors = || runs.iter().filter_map(|run| run.error.as_ref());
-    let filters: BTreeSet<&str> = errors().map(|error| error.filter.as_str()).collect();
-    let worst = errors().map(|error| error.truth_rms).fold(0.0, f64::max);
-    if filters.is_empty() {
-        "no run was compared with the truth".into()
-    } else {
+    let of = |against| {
+        runs.iter().filter_map(|run| run.error.as_ref()).filter(move |error| error.against == against)
+    };
+    let filters = |against| {
+        let names: BTreeSet<&str> = of(against).map(|error| error.filter.as_str()).collect();
+        let names = names.into_iter().map(filter).collect::<Vec<_>>().join(" and ");
+        Some(names).filter(|names| !names.is_empty())
+    };
+    let worst = of(Against::Surface).map(|error| error.truth_rms).fold(0.0, f64::max);
+    let exact = filters(Against::Surface).map(|filters| {
         format!(
-            "rays traced against the exact surface in float64, filtered by {}; its own standard error is at most {} (root mean square over \
-             a picture)",
-            filters.into_iter().map(filter).collect::<Vec<_>>().join(" and "),
+            "rays traced against the exact surface in float64, filtered by {filters}; its own standard error is at most {} (root mean square \
+             over a picture)",
             format::significant(worst, 2)
         )
+    });
+    let own = filters(Against::OwnReference).map(|filters| {
+        format!("where the surface is unknown, each method's own float64 reference at 64 rays a pixel, filtered by {filters}")
+    });
+    match exact.into_iter().chain(own).collect::<Vec<_>>() {
+        none if none.is_empty() => "no run was compared with the truth".into(),
+        all => all.join("; "),
     }
 }
 
