@@ -4,7 +4,6 @@ use clap::ValueEnum;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
 use std::str::FromStr;
-use std::time::Duration;
 use surfel::geometry::ValueRange;
 use surfel::geometry::srgb;
 use surfel::settings::Choice;
@@ -38,18 +37,6 @@ pub fn positive<T: FromStr + Into<f64> + Copy>(text: &str) -> Result<T, String> 
     let number = text.trim().parse().ok();
     let usable = number.filter(|&number: &T| number.into() > 0.0 && number.into().is_finite());
     usable.ok_or_else(|| "give a number above 0".into())
-}
-
-/// Most minutes of a time limit: about two years.
-const MOST_MINUTES: f64 = 1e6;
-
-/// A time limit in minutes.
-pub fn minutes(text: &str) -> Result<Duration, String> {
-    let minutes: f64 = positive(text)?;
-    if minutes > MOST_MINUTES {
-        return Err(format!("{text} is more than {MOST_MINUTES}"));
-    }
-    Ok(Duration::from_secs_f64(60.0 * minutes))
 }
 
 /// Parses the angle of a sharp edge, degrees.

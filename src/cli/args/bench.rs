@@ -1,7 +1,7 @@
 //! Options of `surfel bench`.
 
 use super::DeviceArgs;
-use crate::cli::values::{method, minutes, one_of, size};
+use crate::cli::values::{method, one_of, positive, size};
 use clap::Args;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -66,4 +66,16 @@ pub struct Bench {
     /// Prints nothing but warnings and errors
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+/// Most minutes of a time limit: about two years.
+const MOST_MINUTES: f64 = 1e6;
+
+/// A time limit in minutes.
+fn minutes(text: &str) -> Result<Duration, String> {
+    let minutes: f64 = positive(text)?;
+    if minutes > MOST_MINUTES {
+        return Err(format!("{text} is more than {MOST_MINUTES}"));
+    }
+    Ok(Duration::from_secs_f64(60.0 * minutes))
 }
