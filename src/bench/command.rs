@@ -2,11 +2,20 @@
 
 use super::format;
 use super::record::{Error, Implementation, Run, Viewpoint};
+use crate::settings::Choice;
+use crate::settings::splatting::Normalization;
 
-/// The commands that render the picture of a run, `out.png`, and its exact picture, `truth.png`. None for the baselines, which no command
-/// renders, and without a viewpoint; no exact picture where the surface is unknown.
+/// The commands that render the picture of a run, `out.png`, and its exact picture, `truth.png`. None without a viewpoint, and for what no option
+/// chooses: the baselines, box weights of pull–push, and weights of surfels, which are captured beforehand. No exact picture where the surface is
+/// unknown.
 pub fn commands(run: &Run) -> Option<[Option<String>; 2]> {
-    let viewpoint = run.viewpoint.as_ref().filter(|_| !run.implementation.is_baseline())?;
+    let Implementation { variant, .. } = &run.implementation;
+    let by_options = variant.is_empty() || variant.starts_with("--");
+    let captured = run.settings.axes.normalization == Normalization::Surfel.name();
+    if run.implementation.is_baseline() || !by_options || captured {
+        return None;
+    }
+    let viewpoint = run.viewpoint.as_ref()?;
     let exact = run.error.as_ref().filter(|_| run.has_truth());
     Some([Some(render(run, viewpoint)), exact.map(|error| truth(run, error, viewpoint))])
 }

@@ -120,7 +120,7 @@ impl Runner {
         Ok(only.unwrap_or_else(|| blank(plan, None)))
     }
 
-    /// Executes plans that are [beside](Plan::is_beside) each other, and hands each run over in their order. The frames that are timed take
+    /// Executes plans that are [beside](Plan::is_beside) each other, and passes each run to `done`, in their order. The frames that are timed take
     /// turns, of as many plans as a limit of memory permits. A run that cannot be rendered is refused. Plans that remain when the
     /// [time](Options::until) is over have no run.
     ///

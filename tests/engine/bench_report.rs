@@ -2,6 +2,7 @@
 
 use crate::support::results::*;
 use std::collections::BTreeMap;
+use surfel::bench::command::commands;
 use surfel::bench::machines::{self, Machine};
 use surfel::bench::record::*;
 use surfel::bench::{Results, csv, report, table};
@@ -494,4 +495,21 @@ fn results_without_later_fields_are_read() {
             .iter()
             .all(|run| run.settings.axes == Axes::default() && run.paper_item.is_empty())
     );
+}
+
+#[test]
+fn commands_are_of_what_options_choose() {
+    let plain = run(Experiment::Budget, "scene:a", 1000, 1.0, 0.1);
+    let [render, truth] = commands(&plain).unwrap();
+    assert!(render.is_some_and(|text| text.starts_with("surfel render 'scene:a?points=1000' --method ")));
+    assert!(truth.is_some_and(|text| text.starts_with("surfel truth scene:a ")));
+    let by = |method: &str, variant: &str| {
+        let implementation = Implementation { method: method.into(), variant: variant.into() };
+        commands(&Run { implementation, ..plain.clone() })
+    };
+    assert!(by("perspective-ewa", "--filter none").is_some());
+    assert!(by("pull-push-paper", "with box weights").is_none() && by(TRACED, "").is_none());
+    let mut captured = plain.clone();
+    captured.settings.axes.normalization = "surfel".into();
+    assert!(commands(&captured).is_none() && commands(&Run { viewpoint: None, ..plain }).is_none());
 }
