@@ -1,5 +1,7 @@
 //! Executes plans, and caches what several runs share: surfels, exact pictures, the device.
 
+mod truths;
+
 use super::engine::{CpuEngine, DeviceEngine, Engine, LoadedEngine, TracedEngine};
 use super::papers::details;
 use super::plan::{Measurements, Plan};
@@ -19,7 +21,7 @@ use crate::verify::metrics::path::PathValues;
 use crate::verify::metrics::{self, Pair, colour};
 use crate::verify::reference::{self, Expected, Tolerance};
 use crate::verify::scenes::Viewpoint;
-use crate::verify::truth::{self, Cache, StandardError, Traceable, Truth};
+use crate::verify::truth::{self, Truth};
 use crate::vk::Device;
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -344,7 +346,7 @@ impl Runner {
         let finite = known.chain(details).filter(|(_, value)| value.is_finite());
         Ok(record::Error {
             against: if job.subject.surface().is_some() { Against::Surface } else { Against::OwnReference },
-            filter: filter_name(&self.options.truth),
+            filter: truths::filter_name(&self.options.truth),
             surface: job.subject.surface_name().into(),
             target: self.options.truth.error,
             most_samples: self.options.truth.most_samples,
@@ -397,68 +399,11 @@ impl Runner {
         Ok((flicker.value()?, flicker.path().clone()))
     }
 
-    /// The exact picture, or the supersampled reference if the surface is unknown. Each is rendered once.
-    fn truth(&mut self, job: &Job<'_>, camera: &Camera) -> Result<Rc<Truth>> {
-        let own = &job.plan.settings;
-        let settings = match job.subject.surface() {
-            Some(_) => Settings {
-                shading: own.shading,
-                background: own.background,
-                lighting: own.lighting.clone(),
-                ..Default::default()
-            },
-            None => own.clone(),
-        };
-        let key = format!("{} {:?} {settings:?} {camera:?}", job.plan.scene, job.plan.size);
-        if let Some(truth) = self.truths.get(&key) {
-            return Ok(truth.clone());
-        }
-        let truth = Rc::new(match job.subject.surface() {
-            Some(surface) => self.exact(job, surface, camera, &settings)?,
-            None => self.supersampled(job, camera, &settings)?,
-        });
-        self.truths.insert(key, truth.clone());
-        Ok(truth)
-    }
-
-    /// The exact picture of a surface, cached on disk if there is a folder.
-    fn exact(
-        &self,
-        job: &Job<'_>,
-        surface: &dyn Traceable,
-        camera: &Camera,
-        settings: &Settings,
-    ) -> Result<Truth> {
-        let (size, options, digest) = (job.plan.size, &self.options.truth, &job.subject.digest);
-        match &self.options.cache {
-            Some(folder) => Cache::new(folder).render(digest, surface, camera, settings, size, options, &()),
-            None => truth::render(surface, camera, settings, size, options, &()),
-        }
-    }
-
-    /// The float64 reference of all points, with 64 rays a pixel.
-    fn supersampled(&self, job: &Job<'_>, camera: &Camera, settings: &Settings) -> Result<Truth> {
-        let points = job.subject.most_points().unwrap_or(job.plan.points);
-        let key = ModelKey { points, ..self.key(job.plan) };
-        let model = self.model(&job.subject, &key)?;
-        let (size, filter) = (job.plan.size, self.options.truth.filter);
-        let picture = truth::supersampled(&model, camera, settings, size, filter, &())?;
-        Ok(Truth { picture, error: StandardError::default() })
-    }
-
     /// Key of a plan's model.
     fn key(&self, plan: &Plan) -> ModelKey {
         let by_surfel = plan.settings.splatting.normalization == Normalization::Surfel;
         let weights = by_surfel.then(|| capture::plain(&plan.settings));
         ModelKey { scene: plan.scene.clone(), points: plan.points, radius_scale: plan.radius_scale, weights }
-    }
-}
-
-fn filter_name(options: &truth::Options) -> String {
-    match options.filter {
-        truth::Filter::Gaussian { .. } => "gaussian".into(),
-        truth::Filter::Box => "box".into(),
-        truth::Filter::Point => "point".into(),
     }
 }
 
