@@ -78,7 +78,7 @@ void main() {
     Sample s;
     if (RECONSTRUCT) s = reconstructed(pixel);
     else s = load_final(pixel);
-    vec4 image = frame.background;
+    vec4 image = empty_pixel();
     if (s.near > 0.0) {
         vec2 centre = vec2(pixel) + 0.5;
         vec3 ray = centre.x * view.ray_hi[0].xyz + centre.y * view.ray_hi[1].xyz + view.ray_hi[2].xyz;
@@ -94,12 +94,12 @@ void main() {
         else if (s.tube) s.depth = on_tube(s, centre, -s.displacement, s.normal);
         vec3 shaded = vec3(1.0);
         if (SHADING == LIT) {
-            shaded = s.tube && PAPER ? lit_line(shine, colour, tangent, to_eye) : lit(shine, colour, s.normal, to_eye);
+            shaded = s.tube && PAPER ? lit_line(shine, colour, tangent, to_eye) : lit(shine, colour, s.normal, s.normal, to_eye);
         }
         if (SHADING == COLOUR) shaded = colour;
         if (SHADING == NORMAL) shaded = s.normal;
         if (SHADING == DEPTH) shaded = vec3(s.depth);
-        image = over_background(shaded, COVERAGE ? coverage_of(pixel) : 1.0);
+        image = picture_pixel(shaded, COVERAGE ? coverage_of(pixel) : 1.0);
     }
     store_outputs(pixel, image, s.normal, s.depth);
 #if defined(STORE_IDS) || defined(LOOKUPS_STORE_IDS)

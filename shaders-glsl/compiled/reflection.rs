@@ -270,6 +270,26 @@ pub static FILL_FRAGMENT: Module = Module {
     push: size_of::<layout::FillOptions>() as u32,
 };
 
+/// The compute stage of `shaders-glsl/filter.glsl`.
+pub static FILTER_COMPUTE: Module = Module {
+    name: "filter_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("filter_compute.spv"),
+    constants: &[66],
+    resources: &[(&resource::FRAME, false), (&resource::IMAGE_OUTPUT, true), (&resource::FILTERED_ROWS, true)],
+    push: 0,
+};
+
+/// The compute stage of `shaders-glsl/filter.glsl`.
+pub static FILTER_COLUMNS_COMPUTE: Module = Module {
+    name: "filter_columns_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("filter_columns_compute.spv"),
+    constants: &[6, 31, 66],
+    resources: &[(&resource::FRAME, false), (&resource::IMAGE_OUTPUT, true), (&resource::FILTERED_ROWS, true)],
+    push: 0,
+};
+
 /// The compute stage of `shaders-glsl/footprint.glsl`.
 pub static FOOTPRINT_COMPUTE: Module = Module {
     name: "footprint_compute",
@@ -315,7 +335,7 @@ pub static NEAREST_COMPUTE: Module = Module {
     name: "nearest_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -365,7 +385,7 @@ pub static NEAREST_SUBGROUPS_COMPUTE: Module = Module {
     name: "nearest_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -375,7 +395,7 @@ pub static NEAREST_SLICES_COMPUTE: Module = Module {
     name: "nearest_slices_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_slices_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::SUMS0, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -385,7 +405,7 @@ pub static NEAREST_SUBGROUPS_SLICES_COMPUTE: Module = Module {
     name: "nearest_subgroups_slices_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_subgroups_slices_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::SUMS0, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -405,7 +425,7 @@ pub static NORMALIZE_FRAGMENT: Module = Module {
     name: "normalize_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_fragment.spv"),
-    constants: &[0, 3, 4, 6, 7, 17, 18, 20],
+    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 66],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY_IMAGE, false), (&resource::SUMS0_IMAGE, false), (&resource::SUMS1_IMAGE, false)],
     push: 0,
 };
@@ -415,7 +435,7 @@ pub static NORMALIZE_COMPUTE: Module = Module {
     name: "normalize_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("normalize_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 66],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, false), (&resource::SUMS1, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: 0,
 };
@@ -435,7 +455,7 @@ pub static NORMALIZE_COVERAGE_FRAGMENT: Module = Module {
     name: "normalize_coverage_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_coverage_fragment.spv"),
-    constants: &[0, 3, 4, 6, 7, 17, 18, 20],
+    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 66],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::COVERAGE, false), (&resource::VISIBILITY_IMAGE, false), (&resource::SUMS0_IMAGE, false), (&resource::SUMS1_IMAGE, false)],
     push: 0,
 };
@@ -445,7 +465,7 @@ pub static NORMALIZE_COVERAGE_COMPUTE: Module = Module {
     name: "normalize_coverage_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("normalize_coverage_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 66],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, false), (&resource::SUMS1, false), (&resource::IMAGE_OUTPUT, true), (&resource::COVERAGE, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: 0,
 };
@@ -455,7 +475,7 @@ pub static NORMALIZE_SUBPASS_FRAGMENT: Module = Module {
     name: "normalize_subpass_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_subpass_fragment.spv"),
-    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42],
+    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42, 66],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY_INPUT, false), (&resource::SUMS0_INPUT, false), (&resource::SUMS1_INPUT, false)],
     push: size_of::<layout::Subpass>() as u32,
 };
@@ -465,7 +485,7 @@ pub static NORMALIZE_SUBPASS_COVERAGE_FRAGMENT: Module = Module {
     name: "normalize_subpass_coverage_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_subpass_coverage_fragment.spv"),
-    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42],
+    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42, 66],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::COVERAGE, false), (&resource::VISIBILITY_INPUT, false), (&resource::SUMS0_INPUT, false), (&resource::SUMS1_INPUT, false)],
     push: size_of::<layout::Subpass>() as u32,
 };
@@ -635,7 +655,7 @@ pub static SHADE_COMPUTE: Module = Module {
     name: "shade_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48, 65],
+    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48, 65, 66],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -645,7 +665,7 @@ pub static SHADE_LOOKUPS_COMPUTE: Module = Module {
     name: "shade_lookups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_lookups_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48, 65],
+    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48, 65, 66],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -655,7 +675,7 @@ pub static SHADE_STORE_IDS_COMPUTE: Module = Module {
     name: "shade_store_ids_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_store_ids_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48, 65],
+    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48, 65, 66],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::ID_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -665,7 +685,7 @@ pub static SHADE_LOOKUPS_STORE_IDS_COMPUTE: Module = Module {
     name: "shade_lookups_store_ids_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_lookups_store_ids_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48, 65],
+    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48, 65, 66],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::ID_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -675,7 +695,7 @@ pub static SURFACE_COMPUTE: Module = Module {
     name: "surface_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 66],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -685,7 +705,7 @@ pub static SURFACE_SUBGROUPS_COMPUTE: Module = Module {
     name: "surface_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 66],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -796,7 +816,7 @@ pub mod constant {
     pub const CORNERS: u32 = 27;
     /// `COUNT`, first in `shaders-glsl/cull.glsl`.
     pub const COUNT: u32 = 2;
-    /// `COVERAGE`, first in `shaders-glsl/nearest.glsl`.
+    /// `COVERAGE`, first in `shaders-glsl/filter.glsl`.
     pub const COVERAGE: u32 = 31;
     /// `CULL_BACK`, first in `shaders-glsl/cull.glsl`.
     pub const CULL_BACK: u32 = 1;
@@ -808,6 +828,8 @@ pub mod constant {
     pub const ELLIPSE_STRIDE: u32 = 60;
     /// `ENCODE`, first in `shaders-glsl/composite.glsl`.
     pub const ENCODE: u32 = 41;
+    /// `FILTER_RADIUS`, first in `shaders-glsl/filter.glsl`.
+    pub const FILTER_RADIUS: u32 = 66;
     /// `FOOTPRINT`, first in `shaders-glsl/attribute.glsl`.
     pub const FOOTPRINT: u32 = 15;
     /// `FRAME_CORNERS`, first in `shaders-glsl/attribute.glsl`.
@@ -860,8 +882,8 @@ pub mod constant {
     pub const RADIUS_STRIDE: u32 = 56;
     /// `RECONSTRUCT`, first in `shaders-glsl/shade.glsl`.
     pub const RECONSTRUCT: u32 = 48;
-    /// `SHADE_SPLATS`, first in `shaders-glsl/attribute.glsl`.
-    pub const SHADE_SPLATS: u32 = 20;
+    /// `SHADE`, first in `shaders-glsl/attribute.glsl`.
+    pub const SHADE: u32 = 20;
     /// `SHADING`, first in `shaders-glsl/colour_map.glsl`.
     pub const SHADING: u32 = 6;
     /// `SLICED`, first in `shaders-glsl/attribute.glsl`.
@@ -1307,6 +1329,15 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
+    /// `filtered_rows`, first in `shaders-glsl/filter.glsl`.
+    pub static FILTERED_ROWS: Resource = Resource {
+        name: "filtered_rows",
+        set: 1,
+        binding: 23,
+        kind: DescriptorType::STORAGE_IMAGE,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
     /// `final_quad0`, first in `shaders-glsl/push.glsl`.
     pub static FINAL_QUAD0: Resource = Resource {
         name: "final_quad0",
@@ -1424,7 +1455,7 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `image_output`, first in `shaders-glsl/nearest.glsl`.
+    /// `image_output`, first in `shaders-glsl/filter.glsl`.
     pub static IMAGE_OUTPUT: Resource = Resource {
         name: "image_output",
         set: 1,
@@ -1739,12 +1770,12 @@ pub mod layout {
         pub specular: f32,
         /// Byte 152.
         pub shininess: f32,
-        /// Unused: the layout leaves a gap here.
-        pub _pad17: [u8; 4],
+        /// Byte 156.
+        pub pixel_filter: f32,
         /// Byte 160.
         pub origin: [f32; 2],
         /// Unused: the layout leaves a gap here.
-        pub _pad18: [u8; 8],
+        pub _pad19: [u8; 8],
     }
     const _: () = assert!(std::mem::offset_of!(Frame, viewport) == 0);
     const _: () = assert!(std::mem::offset_of!(Frame, near) == 8);
@@ -1763,6 +1794,7 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Frame, ambient) == 144);
     const _: () = assert!(std::mem::offset_of!(Frame, specular) == 148);
     const _: () = assert!(std::mem::offset_of!(Frame, shininess) == 152);
+    const _: () = assert!(std::mem::offset_of!(Frame, pixel_filter) == 156);
     const _: () = assert!(std::mem::offset_of!(Frame, origin) == 160);
     const _: () = assert!(std::mem::size_of::<Frame>() == 176);
 

@@ -23,6 +23,7 @@ layout(set = 0, binding = 0, std140) uniform Frame {
     float ambient;
     float specular;
     float shininess;
+    float pixel_filter;       // variance of the filter after shading, px²
     vec2 origin;              // of the viewport in the target, px
 } frame;
 

@@ -19,13 +19,14 @@ vec3 blinn_phong(Shine shine, vec3 albedo, float lambert, float half_way, float 
     return diffuse * lambert * albedo + shine.specular * highlight;
 }
 
-vec3 lit(Shine shine, vec3 albedo, vec3 normal, vec3 to_eye) {
+// Lights a surface; `lambert` is the vector that gives diffuse light: the normal, or a mean of unit normals, shorter where these differ.
+vec3 lit(Shine shine, vec3 albedo, vec3 normal, vec3 lambert, vec3 to_eye) {
     float facing = dot(normal, to_eye);
-    vec3 sum = frame.ambient * albedo + blinn_phong(shine, albedo, facing, facing, frame.albedo.a);
+    vec3 sum = frame.ambient * albedo + blinn_phong(shine, albedo, dot(lambert, to_eye), facing, frame.albedo.a);
     for (uint i = 0; i < LIGHTS; i++) {
         vec3 light = view.to_light[i].xyz;
         float half_way = dot(normal, normalize(light + to_eye));
-        sum += frame.radiance[i].rgb * blinn_phong(shine, albedo, dot(normal, light), half_way, 1.0);
+        sum += frame.radiance[i].rgb * blinn_phong(shine, albedo, dot(lambert, light), half_way, 1.0);
     }
     return sum;
 }

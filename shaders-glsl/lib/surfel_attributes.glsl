@@ -3,7 +3,7 @@
 #include "lib/shading.glsl"
 #include "lib/surfels.glsl"
 
-layout(constant_id = 20) const bool SHADE_SPLATS = false; // summed colours are lit: splats are lit at their centres
+#include "lib/shade.glsl"
 
 DEFINE_COLOURS(colour_of, COLOURS, colours, COLOUR_OFFSET, COLOUR_STRIDE)
 DEFINE_COORDINATES(coordinates_of, colours)
@@ -17,6 +17,6 @@ vec3 to_eye_of(uint i) {
 void surfel_attributes(uint i, float epsilon, out vec3 attribute0, out vec3 attribute1) {
     vec3 normal = sign(epsilon) * normal_of(i);
     attribute1 = SUM_COLOURS ? colour_of(i) : vec3(0.0);
-    if (SHADE_SPLATS) attribute1 = lit(FRAME_SHINE, attribute1, normal, to_eye_of(i));
+    if (SHADE == PER_SPLAT) attribute1 = lit(FRAME_SHINE, attribute1, normal, normal, to_eye_of(i));
     attribute0 = SUM_NORMALS ? to_world(normal) : attribute1;
 }

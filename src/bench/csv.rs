@@ -122,6 +122,7 @@ fn what(run: &Run) -> Vec<Cell> {
         ("variant", run.implementation.variant.clone()),
         ("cutoff", setting.cutoff.to_string()),
         ("lowpass", setting.lowpass.to_string()),
+        ("pixel_filter", setting.pixel_filter.to_string()),
         ("widen", setting.widen.clone()),
         ("epsilon", setting.epsilon.to_string()),
         ("cull", setting.cull.clone()),

@@ -69,8 +69,12 @@ fn preset(settings: &Settings) -> Method {
     if let Some(method) = Method::ALL.into_iter().find(of_points) {
         return method;
     }
-    let numbers = (settings.cutoff, settings.lowpass, settings.widen, settings.cull);
-    let differs = |method: &Method| (method.cutoff, method.lowpass, method.widen, method.cull) != numbers;
+    let differs = |method: &Method| {
+        let preset = method.settings();
+        (preset.cutoff, preset.lowpass, preset.pixel_filter)
+            != (settings.cutoff, settings.lowpass, settings.pixel_filter)
+            || (preset.widen, preset.cull) != (settings.widen, settings.cull)
+    };
     let splatting = Method::ALL.into_iter().filter(|method| method.pull_push.is_none());
     let nearest = splatting.min_by_key(|method| (changes(method, settings).len(), differs(method)));
     nearest.unwrap_or(Method::SPLATTING[0])

@@ -216,13 +216,20 @@ pub fn stale(provenance: &Provenance, code: &str, now: &str) -> Option<String> {
 }
 
 /// Place of the shading among [`settings`].
-const SHADING: usize = 6;
+const SHADING: usize = 7;
+
+/// Value of `--pixel-filter` of this variance.
+fn pixel_filter_option(variance: f32) -> String {
+    if variance > 0.0 { format!("gaussian:{variance}") } else { "none".into() }
+}
 
 /// Each setting as its option of `surfel render`, without the axes, which the implementation's name contains.
-pub fn settings(setting: &RunSettings) -> [String; 7] {
-    let RunSettings { cutoff, lowpass, widen, epsilon, cull, alpha, shading, axes: _ } = setting;
+pub fn settings(setting: &RunSettings) -> [String; 8] {
+    let RunSettings { cutoff, lowpass, pixel_filter, widen, epsilon, cull, alpha, shading, axes: _ } =
+        setting;
     [
         format!("--lowpass {lowpass}"),
+        format!("--pixel-filter {}", pixel_filter_option(*pixel_filter)),
         format!("--cutoff {cutoff}"),
         format!("--widen {widen}"),
         format!("--epsilon {epsilon}"),
@@ -233,7 +240,7 @@ pub fn settings(setting: &RunSettings) -> [String; 7] {
 }
 
 /// The settings in which `runs` differ.
-pub fn differing_settings<'a>(runs: impl IntoIterator<Item = &'a Run>) -> [bool; 7] {
+pub fn differing_settings<'a>(runs: impl IntoIterator<Item = &'a Run>) -> [bool; 8] {
     let all: Vec<_> = runs.into_iter().map(|run| settings(&run.settings)).collect();
     std::array::from_fn(|i| all.iter().any(|one| one[i] != all[0][i]))
 }

@@ -118,6 +118,7 @@ impl RunSettings {
         Self {
             cutoff: settings.cutoff,
             lowpass: settings.lowpass,
+            pixel_filter: settings.pixel_filter,
             widen: settings.widen.name().into(),
             epsilon: settings.epsilon,
             cull: settings.cull.name().into(),

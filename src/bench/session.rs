@@ -205,9 +205,11 @@ fn hard(
 /// baselines, one of the same suite and experiment is preferred, as it ran at about the same time.
 fn compare_times(runs: &mut [Run]) {
     let shipped = |run: &&Run| {
-        let RunSettings { cutoff, lowpass, widen, epsilon, cull, alpha, .. } = RunSettings::defaults();
+        let RunSettings { cutoff, lowpass, pixel_filter, widen, epsilon, cull, alpha, .. } =
+            RunSettings::defaults();
         let own = &run.settings;
         (own.cutoff, own.lowpass, own.epsilon) == (cutoff, lowpass, epsilon)
+            && own.pixel_filter == pixel_filter
             && own.widen == widen
             && own.cull == cull
             && own.alpha == alpha

@@ -47,7 +47,8 @@ fn value(method: &Method) -> Value {
         })
         .collect();
     let settings = json!({
-        "cutoff": method.cutoff, "lowpass": method.lowpass, "widen": method.widen.name(), "cull": method.cull.name(),
+        "cutoff": method.cutoff, "lowpass": method.lowpass, "pixel_filter": method.pixel_filter, "widen": method.widen.name(), "cull": method.cull.name(),
+        "alpha": method.alpha.name(),
     });
     json!({ "name": method.name, "paper": method.paper, "axes": axes, "settings": settings, "frames": frames })
 }
@@ -56,7 +57,7 @@ fn describe(text: &mut String, method: &Method) {
     if method.pull_push.is_some() {
         // Here and below: writing to a String cannot fail.
         let _ = writeln!(text, "\n{}: {}", method.name, method.paper);
-        let _ = writeln!(text, "  settings --cull {}", method.cull.name());
+        let _ = writeln!(text, "  settings --cull {} {}", method.cull.name(), picture_options(method));
         describe_frames(text, method);
         return;
     }
@@ -76,8 +77,22 @@ fn describe(text: &mut String, method: &Method) {
         normalization.name(),
         shade.name()
     );
-    let _ = writeln!(text, "  settings --cutoff {cutoff} --cull {}{lowpass}", cull.name());
+    let _ = writeln!(
+        text,
+        "  settings --cutoff {cutoff} --cull {} {}{lowpass}",
+        cull.name(),
+        picture_options(method)
+    );
     describe_frames(text, method);
+}
+
+/// Options of α and of the filter of pixels.
+fn picture_options(method: &Method) -> String {
+    let filter = match method.pixel_filter {
+        0.0 => "none".into(),
+        variance => format!("gaussian:{variance}"),
+    };
+    format!("--alpha {} --pixel-filter {filter}", method.alpha.name())
 }
 
 fn describe_frames(text: &mut String, method: &Method) {

@@ -115,6 +115,7 @@ fn settings(settings: &Settings) -> Value {
         pull_push,
         cutoff,
         lowpass,
+        pixel_filter,
         widen,
         epsilon,
         cull,
@@ -133,7 +134,7 @@ fn settings(settings: &Settings) -> Value {
     json!({
         "footprint": footprint.name(), "kernel": kernel.to_string(), "filter": filter.name(),
         "visibility": visibility.name(), "normalization": normalization.name(), "shade": shade.name(),
-        "cutoff": cutoff, "lowpass": lowpass, "widen": widen.name(), "epsilon": epsilon, "cull": cull.name(),
+        "cutoff": cutoff, "lowpass": lowpass, "pixel_filter": pixel_filter, "widen": widen.name(), "epsilon": epsilon, "cull": cull.name(),
         "alpha": alpha.name(), "shading": shading.name(),
         "background": background, "lighting": light(lighting),
     })

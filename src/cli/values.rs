@@ -6,9 +6,9 @@ use glam::DVec3;
 use std::str::FromStr;
 use surfel::geometry::ValueRange;
 use surfel::geometry::srgb;
-use surfel::settings::Choice;
 use surfel::settings::methods::Method;
 use surfel::settings::splatting::Kernel;
+use surfel::settings::{Choice, Settings};
 
 /// Parses `WxH`, px.
 pub fn size(text: &str) -> Result<[u32; 2], String> {
@@ -150,6 +150,17 @@ pub fn kernel(text: &str) -> Result<Kernel, String> {
         _ => None,
     }
     .ok_or_else(|| "give gaussian, or confetti:A,N, for example confetti:6,3".into())
+}
+
+/// Parses the filter of pixels: its variance, px², 0 for none.
+pub fn pixel_filter(text: &str) -> Result<f32, String> {
+    match text.split_once(':') {
+        None if text == "none" => Some(0.0),
+        None if text == "gaussian" => Some(Settings::DEFAULT_PIXEL_FILTER),
+        Some(("gaussian", variance)) => variance.trim().parse().ok(),
+        _ => None,
+    }
+    .ok_or_else(|| "give none, gaussian, or gaussian:VARIANCE_PX2, for example gaussian:0.5".into())
 }
 
 /// Additional layer of an EXR file.

@@ -105,6 +105,7 @@ impl Resource {
             Self::HostDepth => &[&resource::HOST_DEPTH],
             Self::IncompleteFrame => &[&resource::INCOMPLETE_FRAME],
             Self::Image => &[&resource::IMAGE_OUTPUT],
+            Self::FilteredRows => &[&resource::FILTERED_ROWS],
             Self::Normal => &[&resource::NORMAL_OUTPUT],
             Self::Depth => &[&resource::DEPTH_OUTPUT],
             Self::Id => &[&resource::ID_OUTPUT],
@@ -120,7 +121,13 @@ pub fn describe(variant: &Variant) -> Vec<TargetDescription> {
         (None, Rasterizer::Draw) => raster_targets(variant),
         (None, Rasterizer::Compute) => compute_targets(variant),
     };
-    list.into_iter().flatten().collect()
+    std::iter::once(filtered_rows(variant)).chain(list).flatten().collect()
+}
+
+/// The picture filtered along rows.
+fn filtered_rows(variant: &Variant) -> Option<TargetDescription> {
+    let rows = stored(Resource::FilteredRows, COLOUR, &resource::FILTERED_ROWS);
+    (variant.filter_radius > 0).then_some(rows)
 }
 
 fn image(
@@ -160,15 +167,21 @@ fn coverage(variant: &Variant) -> Option<TargetDescription> {
     variant.coverage.then_some(coverage)
 }
 
+/// Format of the picture, and of normals.
+const COLOUR: Format = Format::R32G32B32A32_SFLOAT;
+
+/// An image that compute shaders store.
+fn stored(resource: Resource, format: Format, shader: &'static shaders::Resource) -> TargetDescription {
+    image(resource, format, ImageUse::StoredOutput, Some(shader))
+}
+
 /// Output images of compute passes.
 fn stored_outputs(outputs: Outputs) -> [Option<TargetDescription>; 4] {
-    let output = |resource, format, shader| image(resource, format, ImageUse::StoredOutput, Some(shader));
-    let colour = Format::R32G32B32A32_SFLOAT;
     [
-        Some(output(Resource::Image, colour, &resource::IMAGE_OUTPUT)),
-        outputs.normal.then(|| output(Resource::Normal, colour, &resource::NORMAL_OUTPUT)),
-        outputs.depth.then(|| output(Resource::Depth, Format::R32_SFLOAT, &resource::DEPTH_OUTPUT)),
-        outputs.id.then(|| output(Resource::Id, Format::R32_UINT, &resource::ID_OUTPUT)),
+        Some(stored(Resource::Image, COLOUR, &resource::IMAGE_OUTPUT)),
+        outputs.normal.then(|| stored(Resource::Normal, COLOUR, &resource::NORMAL_OUTPUT)),
+        outputs.depth.then(|| stored(Resource::Depth, Format::R32_SFLOAT, &resource::DEPTH_OUTPUT)),
+        outputs.id.then(|| stored(Resource::Id, Format::R32_UINT, &resource::ID_OUTPUT)),
     ]
 }
 
@@ -177,12 +190,16 @@ fn raster_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
     let sampled = |resource, format, shader| image(resource, format, ImageUse::Sampled, Some(shader));
     let output = |resource, format| image(resource, format, ImageUse::Output, None);
     let [sums0, sums1] = [sums(variant.wide_sums0()), sums(variant.wide_sums1())];
+    let picture = match variant.filter_radius {
+        0 => output(Resource::Image, COLOUR),
+        _ => image(Resource::Image, COLOUR, ImageUse::FilteredOutput, Some(&resource::IMAGE_OUTPUT)),
+    };
     vec![
         Some(sampled(Resource::Visibility, Format::D32_SFLOAT, &resource::VISIBILITY_IMAGE)),
         Some(sampled(Resource::Sums0, sums0, &resource::SUMS0_IMAGE)),
         variant.has_sums1().then(|| sampled(Resource::Sums1, sums1, &resource::SUMS1_IMAGE)),
-        Some(output(Resource::Image, Format::R32G32B32A32_SFLOAT)),
-        variant.outputs.normal.then(|| output(Resource::Normal, Format::R32G32B32A32_SFLOAT)),
+        Some(picture),
+        variant.outputs.normal.then(|| output(Resource::Normal, COLOUR)),
         variant.outputs.depth.then(|| output(Resource::Depth, Format::R32_SFLOAT)),
         coverage(variant),
     ]
@@ -330,7 +347,7 @@ impl RenderTargets {
     fn bindings(&self) -> impl Iterator<Item = (&'static shaders::Resource, Binding<'_>)> {
         self.list.iter().filter_map(|(target, memory)| {
             let binding = match (memory, target.kind) {
-                (Memory::Image(image), Kind::Image(ImageUse::StoredOutput)) => Binding::Stored(image),
+                (Memory::Image(image), Kind::Image(also)) if also.is_stored() => Binding::Stored(image),
                 (Memory::Image(image), _) => Binding::Sampled(image),
                 (Memory::Buffer(buffer), _) => Binding::whole(buffer),
             };
@@ -344,13 +361,14 @@ impl RenderTargets {
         DescriptorSet::new(device, &all.filter(|(resource, _)| pass.binds(resource)).collect::<Vec<_>>())
     }
 
-    fn find(&self, resource: Resource) -> Option<&Memory> {
-        self.list.iter().find(|(target, _)| target.resource == resource).map(|(_, memory)| memory)
+    fn find(&self, resource: Resource) -> Option<(Kind, &Memory)> {
+        let found = self.list.iter().find(|(target, _)| target.resource == resource);
+        found.map(|(target, memory)| (target.kind, memory))
     }
 
     /// The image of a target.
     pub fn image(&self, resource: Resource) -> Option<&Image> {
-        match self.find(resource)? {
+        match self.find(resource)?.1 {
             Memory::Image(image) => Some(image),
             Memory::Buffer(_) => None,
         }
@@ -358,7 +376,7 @@ impl RenderTargets {
 
     /// The buffer of a target.
     pub fn buffer(&self, resource: Resource) -> Option<&Buffer> {
-        match self.find(resource)? {
+        match self.find(resource)?.1 {
             Memory::Image(_) => None,
             Memory::Buffer(buffer) => Some(buffer),
         }
@@ -367,8 +385,11 @@ impl RenderTargets {
     /// Adds the access of a target to `uses`, if it exists.
     pub fn extend_uses(&self, uses: &mut Vec<Use>, resource: Resource, access: Access) {
         match self.find(resource) {
-            Some(Memory::Image(image)) => uses.push(image.with(access.of_image())),
-            Some(Memory::Buffer(buffer)) => uses.push(buffer.with(access)),
+            Some((Kind::Image(also), Memory::Image(image))) if also.is_stored() => {
+                uses.push(image.with(access.of_stored_image()));
+            }
+            Some((_, Memory::Image(image))) => uses.push(image.with(access.of_image())),
+            Some((_, Memory::Buffer(buffer))) => uses.push(buffer.with(access)),
             None => uses.extend(self.pyramid_uses(resource, access)),
         }
     }

@@ -138,6 +138,7 @@ fn frame(
     }
     frame.visibility_lowpass = settings.least_lowpass();
     frame.attribute_lowpass = settings.attribute_lowpass();
+    frame.pixel_filter = settings.pixel_filter;
     let light = &settings.lighting;
     frame.background = settings.background.map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
     let [r, g, b] = light.albedo;

@@ -29,8 +29,8 @@ pub struct Variant {
     pub normalization: Normalization,
     /// Kernels are multiplied by normalization weights.
     pub weights: bool,
-    /// Shading is per splat, not per pixel.
-    pub shade_splats: bool,
+    /// Stage of lighting; [`Shade::Pixel`] unless lit.
+    pub shade: Shade,
     /// The low-pass filter widens only axes shorter than itself.
     pub widen_small: bool,
     /// Splats are counted by cull reason.
@@ -51,6 +51,8 @@ pub struct Variant {
     pub materials: bool,
     /// α is the covered part of a pixel.
     pub coverage: bool,
+    /// Radius of the filter of pixels after shading, px; 0: none.
+    pub filter_radius: u32,
     /// Quantity that the picture shows.
     pub shading: Shading,
     /// Number of directional lights.
@@ -158,7 +160,8 @@ impl Variant {
         // Splatting axes have no effect on pull–push.
         let splatting = if settings.pull_push.is_some() { Splatting::default() } else { settings.splatting };
         let needs_colour = matches!(shading, Shading::Lit | Shading::Colour);
-        let shade_splats = shading == Shading::Lit && splatting.shade == Shade::Splat;
+        let shade = if shading == Shading::Lit { splatting.shade } else { Shade::Pixel };
+        let shade_splats = shade == Shade::Splat;
         let robust = settings.pull_push.is_some_and(|pull_push| pull_push.rules == Rules::Robust);
         let texture = streams.iter().find_map(|streams| streams.texture).filter(|_| robust && needs_colour);
         let colours: Vec<_> = if needs_colour && texture.is_none() {
@@ -186,7 +189,7 @@ impl Variant {
             pull_push: settings.pull_push,
             normalization,
             weights,
-            shade_splats,
+            shade,
             widen_small: settings.widen == Widen::Small && splatting.filter != Filter::None,
             count: options.count,
             normals: lit_pixels || shading == Shading::Normal || options.outputs.normal,
@@ -199,6 +202,7 @@ impl Variant {
                 && settings.pull_push.is_some()
                 && shading == Shading::Lit,
             coverage: settings.alpha == Alpha::Coverage,
+            filter_radius: settings.filter_radius(),
             shading,
             lights: if shading == Shading::Lit { settings.lighting.directional.len() as u32 } else { 0 },
             outputs: options.outputs,
@@ -297,7 +301,7 @@ impl Variant {
             .with(constant::FOOTPRINT, self.footprint as u32)
             .with(constant::CONFETTI, self.confetti)
             .with(constant::NORMALIZATION, self.normalization as u32)
-            .with(constant::SHADE_SPLATS, self.shade_splats)
+            .with(constant::SHADE, self.shade as u32)
             .with(constant::PAPER, self.pull_push.is_some_and(|pull_push| pull_push.rules == Rules::Paper))
             .with(
                 constant::BOX_WEIGHTS,
@@ -315,6 +319,7 @@ impl Variant {
             .with(constant::SUM_NORMALS, self.normals)
             .with(constant::SUM_DEPTH, self.depth)
             .with(constant::SUM_COLOURS, self.colours)
+            .with(constant::FILTER_RADIUS, self.filter_radius)
             .with(constant::SHADING, self.shading as u32)
             .with(constant::LIGHTS, self.lights)
             .with(constant::OUT_NORMAL, self.outputs.normal)

@@ -25,6 +25,10 @@ pub struct Settings {
     /// Variance of the low-pass filter `H = lowpass · I`, px², at most [`Settings::MOST_LOWPASS`]. At least [`Settings::least_lowpass`] is
     /// applied, so that each splat covers a pixel centre.
     pub lowpass: f32,
+    /// Variance of the Gaussian that filters pixels after shading, px², at most [`Settings::MOST_PIXEL_FILTER`]; 0: none. The low-pass filter of
+    /// splats has the rest of [`Settings::lowpass`]. It filters colour and α, not other quantities, and never normals, depths and ids. Of
+    /// [`Alpha::Mask`] it filters the colours of pixels with a surface, and α stays.
+    pub pixel_filter: f32,
     /// Splats that the low-pass filter widens.
     pub widen: Widen,
     /// Depth tolerance ε in surfel radii: splats at most this far behind the nearest one, along the viewing ray, are blended.
@@ -50,6 +54,7 @@ impl Default for Settings {
             splatting: Splatting::default(),
             cutoff: 2.5,
             lowpass: 1.0,
+            pixel_filter: 0.0,
             widen: Widen::Small,
             epsilon: 1.0,
             cull: Cull::None,
@@ -68,10 +73,23 @@ impl Settings {
     /// Largest low-pass variance, px²: the filter widens a splat to at most 10 px per σ.
     pub const MOST_LOWPASS: f32 = 100.0;
 
+    /// Variance of the filter of pixels where none is given, px².
+    pub const DEFAULT_PIXEL_FILTER: f32 = 0.75;
+    /// Largest variance of the filter of pixels, px².
+    pub const MOST_PIXEL_FILTER: f32 = 4.0;
+
     /// Least low-pass variance at which every splat covers a pixel centre, px²: `(0.71 / F)²`, so that the cut-off radius is at least √½
     /// px. The visibility footprint uses it.
     pub fn least_lowpass(&self) -> f32 {
         (0.71 / self.cutoff).powi(2)
+    }
+
+    /// Radius of the filter of pixels, px: 4 σ, rounded up; 0 if the picture is not filtered.
+    pub fn filter_radius(&self) -> u32 {
+        match self.shading {
+            Shading::Lit | Shading::Colour => (4.0 * self.pixel_filter.sqrt()).ceil() as u32,
+            Shading::Normal | Shading::Depth | Shading::Overlap | Shading::Weight => 0,
+        }
     }
 
     /// Low-pass variance of the attribute footprint, px²: the variance that is added to a splat's, or with [`Widen::Small`] its lower
@@ -79,7 +97,7 @@ impl Settings {
     pub fn attribute_lowpass(&self) -> f32 {
         match self.splatting.filter {
             Filter::None => self.least_lowpass(),
-            Filter::Screen | Filter::Object => self.lowpass.max(self.least_lowpass()),
+            Filter::Screen | Filter::Object => (self.lowpass - self.pixel_filter).max(self.least_lowpass()),
         }
     }
 
@@ -135,6 +153,13 @@ impl Settings {
                 "the low-pass variance is {}: give a number of px² from 0 to {}",
                 self.lowpass,
                 Self::MOST_LOWPASS
+            )));
+        }
+        if !(0.0..=Self::MOST_PIXEL_FILTER).contains(&self.pixel_filter) {
+            return Err(Error::Usage(format!(
+                "the variance of the pixel filter is {}: give a number of px² from 0 to {}",
+                self.pixel_filter,
+                Self::MOST_PIXEL_FILTER
             )));
         }
         self.lighting.check()?;

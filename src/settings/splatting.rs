@@ -157,11 +157,17 @@ pub enum Normalization {
     strum::VariantArray,
 )]
 #[strum(serialize_all = "kebab-case")]
+#[repr(u32)]
 pub enum Shade {
     /// Lights splats at their centres, and blends light.
-    Splat,
-    /// Blends normals and colours, and lights pixels.
-    Pixel,
+    Splat = 0,
+    /// Blends normals and colours, and lights pixels by the normalized normal.
+    Pixel = 1,
+    /// As pixel, but diffuse light is that of the mean normal, which is shorter than 1 where the blended normals differ.
+    ///
+    /// The mean of the diffuse light of several normals is that of their mean, as long as all of them face the light: a pixel with a crease is
+    /// as bright as its parts are on average. Highlights are those of the normalized normal.
+    MeanNormal = 2,
 }
 
 impl Default for Splatting {

@@ -27,6 +27,8 @@ pub struct SavedSettings {
     in_turns: bool,
     cutoff: f32,
     lowpass: f32,
+    #[serde(default)]
+    pixel_filter: f32,
     widen: String,
     epsilon: f32,
     cull: String,
@@ -83,6 +85,7 @@ impl SavedSettings {
             in_turns: storage == Some(Storage::PingPong),
             cutoff: settings.cutoff,
             lowpass: settings.lowpass,
+            pixel_filter: settings.pixel_filter,
             widen: settings.widen.name().into(),
             epsilon: settings.epsilon,
             cull: settings.cull.name().into(),
@@ -112,6 +115,7 @@ impl SavedSettings {
             pull_push: preset.pull_push.map(|pull_push| PullPush { storage, ..pull_push }),
             cutoff: self.cutoff,
             lowpass: self.lowpass,
+            pixel_filter: self.pixel_filter,
             widen: Widen::named(&self.widen)?,
             epsilon: self.epsilon,
             cull: Cull::named(&self.cull)?,
@@ -152,6 +156,7 @@ mod tests {
                 ..Splatting::default()
             },
             cutoff: 3.25,
+            pixel_filter: 0.4,
             epsilon: 0.3,
             cull: Cull::Back,
             alpha: Alpha::Coverage,

@@ -120,6 +120,11 @@ impl Access {
         }
     }
 
+    /// The same access to an image that compute shaders load from and store to, if it is one of a buffer.
+    pub fn of_stored_image(self) -> Self {
+        if self.layout == vk::ImageLayout::UNDEFINED { self.in_general() } else { self }
+    }
+
     /// The same access to an image of [`super::ImageUse::Stored`].
     pub fn in_general(self) -> Self {
         Self { layout: vk::ImageLayout::GENERAL, ..self }

@@ -20,8 +20,17 @@ pub enum ImageUse {
     Output,
     /// The result of a frame that compute shaders write: copied to the CPU, or drawn over a host's target.
     StoredOutput,
+    /// The result of a frame that is drawn, and then loaded and stored by compute shaders.
+    FilteredOutput,
     /// Written and fetched by compute shaders in parts, in `GENERAL` layout ([`super::Access::in_general`]).
     Stored,
+}
+
+impl ImageUse {
+    /// Whether compute shaders load from and store to the result.
+    pub fn is_stored(self) -> bool {
+        matches!(self, Self::StoredOutput | Self::FilteredOutput)
+    }
 }
 
 /// A two-dimensional render target with its memory and view.
@@ -55,7 +64,9 @@ impl Image {
         size: [u32; 2],
         also: ImageUse,
     ) -> Result<Self> {
-        let written = if matches!(also, ImageUse::Stored | ImageUse::StoredOutput) {
+        let written = if also == ImageUse::FilteredOutput {
+            vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::COLOR_ATTACHMENT
+        } else if matches!(also, ImageUse::Stored | ImageUse::StoredOutput) {
             vk::ImageUsageFlags::STORAGE
         } else if is_depth(format) {
             vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT
@@ -69,7 +80,7 @@ impl Image {
             }
             #[cfg(feature = "window")]
             ImageUse::Window => vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST,
-            ImageUse::Output | ImageUse::Stored | ImageUse::StoredOutput => {
+            ImageUse::Output | ImageUse::Stored | ImageUse::StoredOutput | ImageUse::FilteredOutput => {
                 vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::SAMPLED
             }
         };

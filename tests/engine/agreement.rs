@@ -97,6 +97,22 @@ fn every_case_with_coverage() {
     assert_agree(all.into_iter().enumerate().flat_map(by).collect());
 }
 
+#[test]
+fn every_case_with_filtered_pixels() {
+    let by = |(i, alpha): (usize, Alpha)| {
+        // The splats are those of other tests.
+        let lowpass = |case: &Case| case.settings.lowpass + 0.75;
+        let filtered = |case: &Case| Settings {
+            alpha,
+            pixel_filter: 0.75,
+            lowpass: lowpass(case),
+            ..case.settings.clone()
+        };
+        failures(&with_axes(filtered), &sampled_views(i, 2), &format!("filtered, {alpha:?}"))
+    };
+    assert_agree([Alpha::Coverage, Alpha::Mask].into_iter().enumerate().flat_map(by).collect());
+}
+
 /// The first filter and normalization that a footprint and a visibility can be combined with.
 fn combined(footprint: Footprint, visibility: Visibility) -> Option<Splatting> {
     let filters = [Filter::Screen, Filter::Object, Filter::None];
@@ -163,6 +179,7 @@ fn every_case_by_other_axes() {
         Splatting { normalization: Normalization::Surfel, footprint: Footprint::Disc, ..object },
         Splatting { normalization: Normalization::Surfel, ..sprites },
         Splatting { filter: Filter::Screen, shade: Shade::Pixel, ..sprites },
+        Splatting { shade: Shade::MeanNormal, ..conic },
         nearest,
         Splatting { footprint: Footprint::Square, filter: Filter::None, ..nearest },
     ];

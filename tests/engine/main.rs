@@ -13,6 +13,7 @@ mod creases;
 mod discs;
 mod disturbance;
 mod estimate;
+mod filter;
 mod footprint;
 mod frames;
 mod hard;

@@ -160,6 +160,9 @@ pub struct RunSettings {
     pub cutoff: f32,
     /// [`Settings::lowpass`](crate::Settings::lowpass), px².
     pub lowpass: f32,
+    /// [`Settings::pixel_filter`](crate::Settings::pixel_filter), px².
+    #[serde(default)]
+    pub pixel_filter: f32,
     /// Which splats the low-pass filter widens: `all` or `small`.
     pub widen: String,
     /// [`Settings::epsilon`](crate::Settings::epsilon), radii.

@@ -22,7 +22,7 @@ pub use truth::Truth;
 #[cfg(feature = "viewer")]
 pub use view::View;
 
-use super::values::{Background, Layer, background, choice, kernel, method, size, vector};
+use super::values::{Background, Layer, background, choice, kernel, method, pixel_filter, size, vector};
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use glam::DVec3;
@@ -231,15 +231,18 @@ pub struct RenderSettings {
     /// What the picture shows
     #[arg(long, value_parser = choice::<Shading>(), default_value = Shading::Lit.name())]
     pub shading: Shading,
-    /// Meaning of α
-    #[arg(long, value_parser = choice::<Alpha>(), default_value = Alpha::Mask.name())]
-    pub alpha: Alpha,
+    /// Meaning of α [default: the method's]
+    #[arg(long, value_parser = choice::<Alpha>())]
+    pub alpha: Option<Alpha>,
     /// Background: transparent, sRGB codes from 0 to 255, or a CSS colour such as #fff or white
     #[arg(long, value_name = "R,G,B|COLOR|transparent", default_value = "transparent", value_parser = background, allow_hyphen_values = true)]
     pub background: Background,
     /// Variance of the anti-aliasing filter, px² [default: the method's, mostly 1]
     #[arg(long, value_name = "VARIANCE_PX2", allow_hyphen_values = true)]
     pub lowpass: Option<f32>,
+    /// Filter of pixels after shading, with its part of the anti-aliasing filter's variance: gaussian:VARIANCE_PX2, or none [default: the method's]
+    #[arg(long, value_name = "none|gaussian[:VARIANCE_PX2]", value_parser = pixel_filter)]
+    pub pixel_filter: Option<f32>,
     /// Which splats the anti-aliasing filter widens [default: the method's]
     #[arg(long, value_parser = choice::<Widen>())]
     pub widen: Option<Widen>,
@@ -310,10 +313,11 @@ impl RenderSettings {
             pull_push: preset.pull_push,
             cutoff: self.cutoff.unwrap_or(preset.cutoff),
             lowpass: self.lowpass.unwrap_or(preset.lowpass),
+            pixel_filter: self.pixel_filter.unwrap_or(preset.pixel_filter),
             widen: self.widen.unwrap_or(preset.widen),
             epsilon: self.epsilon,
             cull: self.cull.unwrap_or(preset.cull),
-            alpha: self.alpha,
+            alpha: self.alpha.unwrap_or(preset.alpha),
             shading: self.shading,
             background: self.background.linear(),
             lighting: preset.lighting,

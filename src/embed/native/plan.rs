@@ -357,6 +357,11 @@ pub(super) fn check_method(settings: &Settings) -> Result<()> {
     }
 }
 
+/// Settings of subpasses: the picture is blended over the host's, and its pixels do not see their neighbours, as a filter of pixels needs.
+pub(super) fn in_subpasses(settings: &Settings) -> Settings {
+    Settings { background: None, pixel_filter: 0.0, ..settings.clone() }
+}
+
 fn variant(
     device: &Device,
     options: &RenderOptions,
@@ -369,5 +374,5 @@ fn variant(
     settings.check_primitives(streams.primitives.any())?;
     let (rasterizer, _) = rasterizer_for(device, options, settings.alpha, Fit::ALL)?;
     let options = RenderOptions { precision: width_of_sums(device, options, rasterizer), ..*options };
-    Ok(Variant::new(&[streams], true, settings, &options, rasterizer))
+    Ok(Variant::new(&[streams], true, &in_subpasses(settings), &options, rasterizer))
 }

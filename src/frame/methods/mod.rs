@@ -6,6 +6,7 @@ mod pull_push;
 
 use super::pass::Pass;
 use super::passes::cull::CULL;
+use super::passes::filter;
 use super::passes::order::ORDER;
 use super::variant::Variant;
 use crate::settings::Rasterizer;
@@ -22,14 +23,17 @@ pub enum Path {
     Subpasses { seed: bool },
 }
 
-/// Passes of a frame of `variant` with so many scenes, in order; in subpasses of a host, raster passes are last. Frames by
-/// tiles first sort surfels in arbitrary order, and cull clusters of surfels with known bounds.
+/// Passes of a frame of `variant` with so many scenes, in order; in subpasses of a host, raster passes are last, and pixels are not filtered,
+/// as this needs neighbours. Frames by tiles first sort surfels in arbitrary order, and cull clusters of surfels with known bounds.
 pub fn passes(variant: &Variant, path: Path, scenes: usize) -> Vec<&'static Pass> {
     let mut list = match (variant.pull_push, variant.visibility) {
         (Some(settings), _) => pull_push::passes(variant, settings.storage, scenes),
         (None, Visibility::Nearest) => nearest::passes(path),
         (None, visibility) => blended::passes(path, visibility == Visibility::Axis, variant.split),
     };
+    if variant.filter_radius > 0 && !matches!(path, Path::Subpasses { .. }) {
+        list.extend([&filter::ROWS, &filter::COLUMNS]);
+    }
     if variant.clusters {
         list.insert(0, &CULL);
     }

@@ -8,6 +8,7 @@ pub mod boxes;
 pub mod copy;
 pub mod cull;
 pub mod fetch;
+pub mod filter;
 pub mod footprint;
 pub mod nearest;
 pub mod normalize;

@@ -10,7 +10,7 @@
 
 use super::Method;
 use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
-use crate::settings::{Cull, Widen};
+use crate::settings::{Alpha, Cull, Widen};
 
 /// The preset, with the kernel of figure 18.
 pub const METHOD: Method = Method {
@@ -27,8 +27,10 @@ pub const METHOD: Method = Method {
     pull_push: None,
     cutoff: 2.0,
     lowpass: 0.0,
+    pixel_filter: 0.0,
     widen: Widen::All,
     cull: Cull::Back,
+    alpha: Alpha::Mask,
 };
 
 /// The preset as published, with the kernel of figure 18 and of its times: "parameters n = 3, a = 6.0, and b = 1.5" (§7). The paper gives no
@@ -50,8 +52,10 @@ pub const PAPER: Method = Method {
     // The kernel ends at the disc's rim, b.
     cutoff: 2.0,
     lowpass: 0.0,
+    pixel_filter: 0.0,
     widen: Widen::All,
     // §6.2, there of nodes of the octree.
     cull: Cull::Back,
+    alpha: Alpha::Mask,
     ..METHOD
 };

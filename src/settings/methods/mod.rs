@@ -17,7 +17,7 @@ pub mod sprites;
 
 use crate::settings::pull_push::PullPush;
 use crate::settings::splatting::Splatting;
-use crate::settings::{Cull, Settings, Widen};
+use crate::settings::{Alpha, Cull, Settings, Widen};
 
 /// A preset: a method as published, or as improved by measurements.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,10 +34,14 @@ pub struct Method {
     pub cutoff: f32,
     /// See [`Settings::lowpass`].
     pub lowpass: f32,
+    /// See [`Settings::pixel_filter`].
+    pub pixel_filter: f32,
     /// See [`Settings::widen`].
     pub widen: Widen,
     /// See [`Settings::cull`].
     pub cull: Cull,
+    /// See [`Settings::alpha`].
+    pub alpha: Alpha,
 }
 
 impl Method {
@@ -79,8 +83,10 @@ impl Method {
             pull_push: self.pull_push,
             cutoff: self.cutoff,
             lowpass: self.lowpass,
+            pixel_filter: self.pixel_filter,
             widen: self.widen,
             cull: self.cull,
+            alpha: self.alpha,
             ..Default::default()
         }
     }

@@ -15,7 +15,7 @@
 use super::Method;
 use crate::geometry::Camera;
 use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
-use crate::settings::{Cull, Settings, Widen};
+use crate::settings::{Alpha, Cull, Settings, Widen};
 
 /// The preset.
 pub const METHOD: Method = Method {
@@ -33,8 +33,10 @@ pub const METHOD: Method = Method {
     // §5.2: ½ y·y ≤ c = 1.
     cutoff: std::f32::consts::SQRT_2,
     lowpass: 1.0,
+    pixel_filter: 0.0,
     widen: Widen::All,
     cull: Cull::Back,
+    alpha: Alpha::Mask,
 };
 
 /// The preset as published, of the higher quality: "refined by per-pixel normalization" (§8). That of higher speed needs surfels with
@@ -56,10 +58,12 @@ pub const PAPER: Method = Method {
     cutoff: std::f32::consts::SQRT_2,
     // §3: "the identity matrix".
     lowpass: 1.0,
+    pixel_filter: 0.0,
     // Equation 5.
     widen: Widen::All,
     // §6.2, there of whole blocks.
     cull: Cull::Back,
+    alpha: Alpha::Mask,
     ..METHOD
 };
 

@@ -12,7 +12,7 @@
 
 use super::Method;
 use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
-use crate::settings::{Cull, Widen};
+use crate::settings::{Alpha, Cull, Widen};
 
 /// The preset.
 pub const METHOD: Method = Method {
@@ -29,8 +29,10 @@ pub const METHOD: Method = Method {
     pull_push: None,
     cutoff: 2.5,
     lowpass: 1.0,
+    pixel_filter: 0.0,
     widen: Widen::Small,
     cull: Cull::None,
+    alpha: Alpha::Mask,
 };
 
 /// The preset as published. The paper neither lights nor culls by facing: what it blends are the colours of splats (§3). It gives no number for
@@ -42,8 +44,10 @@ pub const PAPER: Method = Method {
     cutoff: 1.5,
     // §3: "typically an identity matrix".
     lowpass: 1.0,
+    pixel_filter: 0.0,
     // Equation 3.
     widen: Widen::All,
     cull: Cull::None,
+    alpha: Alpha::Mask,
     ..METHOD
 };

@@ -9,8 +9,8 @@
 //! ```
 
 use super::{Method, perspective_ewa};
-use crate::settings::Cull;
 use crate::settings::pull_push::{PullPush, Rules};
+use crate::settings::{Alpha, Cull};
 
 /// The preset with robust rules.
 pub const METHOD: Method =
@@ -21,6 +21,8 @@ pub const PAPER: Method = Method {
     name: "pull-push-paper",
     paper: "Marroquim, Kraus, Cavalcanti, Efficient Image Reconstruction for Point-Based and Line-Based Rendering, 2008",
     pull_push: Some(PullPush::of(Rules::Paper)),
+    pixel_filter: 0.0,
     cull: Cull::Back,
+    alpha: Alpha::Mask,
     ..perspective_ewa::METHOD
 };

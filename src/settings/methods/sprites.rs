@@ -12,7 +12,7 @@
 
 use super::Method;
 use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
-use crate::settings::{Cull, Widen};
+use crate::settings::{Alpha, Cull, Widen};
 
 /// The preset of higher quality.
 pub const METHOD: Method = Method {
@@ -29,8 +29,10 @@ pub const METHOD: Method = Method {
     pull_push: None,
     cutoff: 2.0,
     lowpass: 0.0,
+    pixel_filter: 0.0,
     widen: Widen::All,
     cull: Cull::Back,
+    alpha: Alpha::Mask,
 };
 
 /// The preset of higher speed.
@@ -59,8 +61,10 @@ pub const PAPER: Method = Method {
     },
     cutoff: 2.0,
     lowpass: 0.0,
+    pixel_filter: 0.0,
     widen: Widen::All,
     // §4: "we added a backface-culling method to the vertex shader".
     cull: Cull::Back,
+    alpha: Alpha::Mask,
     ..METHOD
 };

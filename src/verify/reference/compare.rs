@@ -3,6 +3,8 @@
 use super::bands::Bands;
 use super::error_bounds::{Admissible, ErrorBounds};
 use super::error_model::ErrorModel;
+use super::filter;
+use super::filtered_bounds::{FilteredBounds, PixelRange};
 use super::projected_scene::ProjectedScene;
 use super::rounding::RoundingBound;
 use super::tolerance::{Channel, Differences, Limits, Tolerance};
@@ -11,6 +13,7 @@ use crate::error::{Error, Result};
 use crate::geometry::{Camera, Surfels};
 use crate::picture::Picture;
 use crate::settings::{Settings, Shading};
+use rayon::prelude::*;
 
 /// Failures that are recorded in full.
 const RECORDED: usize = 20;
@@ -63,6 +66,9 @@ impl Comparison {
 pub struct Expected {
     /// The frame.
     pub frame: Frame,
+    /// Its values before the filter, which `frame` has if pixels are not filtered.
+    unfiltered: Option<Frame>,
+    filtered: Option<FilteredBounds>,
     /// Its error bounds.
     pub bounds: ErrorBounds,
     tolerance: Tolerance,
@@ -104,7 +110,16 @@ impl Expected {
             &bands,
         );
         let depth_shown = settings.shading == Shading::Depth;
-        Ok(Self { frame: draw(&projector, &scene, &bands, &()), bounds, tolerance: *tolerance, depth_shown })
+        let frame = draw(&projector, &scene, &bands, &());
+        let mut expected =
+            Self { frame, unfiltered: None, filtered: None, bounds, tolerance: *tolerance, depth_shown };
+        if settings.filter_radius() > 0 {
+            let ranges = (0..expected.frame.depth.len()).into_par_iter().map(|i| expected.range(i)).collect();
+            expected.filtered = Some(FilteredBounds::new(settings, ranges, size));
+            let frame = filter::pass(settings, expected.frame.clone());
+            expected.unfiltered = Some(std::mem::replace(&mut expected.frame, frame));
+        }
+        Ok(expected)
     }
 
     /// Compares every pixel of `gpu` with the frame's value. If that fails and the pixel is ambiguous, compares it with
@@ -141,12 +156,34 @@ impl Expected {
         Ok((depths, normals))
     }
 
+    /// Range of a pixel's values before the filter.
+    fn range(&self, index: usize) -> PixelRange {
+        let rounding = self.bounds.rounding(index);
+        let limit = |bound: RoundingBound| self.limits(bound).colour();
+        let own = PixelRange::new(0.0).with(&self.frame.value(index), limit(rounding));
+        match self.bounds.admissible(index) {
+            Admissible::Definite => own,
+            Admissible::Unresolvable => PixelRange::unknown(),
+            Admissible::Values(values) => {
+                values.fold(own, |range, (value, bound)| range.with(&value, limit(bound)))
+            }
+        }
+    }
+
+    /// A value without what is compared after the filter: colour and α.
+    fn without_filtered(&self, value: &Value) -> Value {
+        let colour = if self.filtered.is_some() { [0.0; 4] } else { value.colour };
+        Value { colour, ..*value }
+    }
+
     fn pixel(&self, index: usize, seen: &Value, found: &mut Comparison) {
-        let own = self.frame.value(index);
+        let filtered = self.filtered.as_ref().map(|bounds| bounds.distance(index, seen));
+        let seen = &self.without_filtered(seen);
+        let own = self.unfiltered.as_ref().unwrap_or(&self.frame).value(index);
         let limits = self.limits(self.bounds.rounding(index));
         let compared = |(value, bound): (Value, RoundingBound)| {
             let limits = self.limits(bound);
-            let differences = limits.differences(seen, &value);
+            let differences = limits.differences(seen, &self.without_filtered(&value));
             (limits.excess(&differences), differences)
         };
         let mut best = compared((own, self.bounds.rounding(index)));
@@ -158,6 +195,11 @@ impl Expected {
                 best = nearest.unwrap_or(best);
             }
         }
+        if let Some((distance, limit)) = filtered {
+            best.0 = best.0.max(distance / limit);
+            best.1.colour = best.1.colour.max(distance);
+            found.worst.colour = found.worst.colour.max(if limit.is_finite() { distance } else { 0.0 });
+        }
         found.worst_of_all.take_max(&best.1);
         if best.0 <= 1.0 {
             return;
@@ -166,7 +208,7 @@ impl Expected {
         if found.failures.len() < RECORDED {
             let width = self.frame.size[0] as usize;
             let [x, y] = [index % width, index / width].map(|v| v as u32);
-            let (channel, gpu, reference) = limits.first_difference(seen, &own);
+            let (channel, gpu, reference) = limits.first_difference(seen, &self.without_filtered(&own));
             found.failures.push(Failure { x, y, channel, gpu, reference });
         }
     }

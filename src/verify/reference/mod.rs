@@ -2,7 +2,7 @@
 //!
 //! Its functions are named as the GPU passes and share no code with them. [`Projector::footprint`] projects a surfel to
 //! a splat, `visibility` finds the depth up to which splats are blended, `coverage` the covered fraction of each pixel.
-//! `attribute` sums the visible splats, or `nearest` takes the first one; `normalize` divides and shades.
+//! `attribute` sums the visible splats, or `nearest` takes the first one; `normalize` divides and shades, `filter` filters.
 //! [`ErrorBounds`] finds the pixels that float32 rounding can change, with every value they may take, from the float64
 //! frame alone; [`compare`] applies both.
 //!
@@ -18,6 +18,8 @@ mod depth_range;
 mod ellipse;
 mod error_bounds;
 mod error_model;
+mod filter;
+mod filtered_bounds;
 mod footprint;
 mod image;
 mod nearest;
@@ -35,6 +37,7 @@ mod visibility;
 
 pub use compare::{Comparison, Expected, Failure, compare};
 pub use error_bounds::{Admissible, ErrorBounds};
+pub use filter::filtered;
 pub use footprint::{Culled, ScreenClip, Splat, Surfel, footprint};
 pub use normalize::Value;
 pub use projected_scene::Counts;
@@ -131,7 +134,8 @@ pub fn render<'a>(
     settings.splatting.normalization.check_weights(surfels.weights.is_some())?;
     settings.check_primitives(parts.primitives.is_some())?;
     if let Some(rules) = settings.pull_push {
-        return pull_push::render(parts, camera, size, settings, rules, progress);
+        let frame = pull_push::render(parts, camera, size, settings, rules, progress)?;
+        return Ok(filter::pass(settings, frame));
     }
     if parts.has_texture() {
         return render(&parts.baked(), camera, size, settings, progress);
@@ -139,7 +143,7 @@ pub fn render<'a>(
     let projector = Projector::new(camera, size, settings)?;
     let scene = ProjectedScene::project(&projector, surfels);
     let frame = draw(&projector, &scene, &Bands::new(&projector, &scene, size), progress);
-    if progress.is_cancelled() { Err(Error::Cancelled) } else { Ok(frame) }
+    if progress.is_cancelled() { Err(Error::Cancelled) } else { Ok(filter::pass(settings, frame)) }
 }
 
 /// The values of a band's pixels.

@@ -4,9 +4,9 @@ use super::Projector;
 use super::attribute::Sums;
 use super::bands::Band;
 use super::rank::Rank;
-use super::shading::{Shine, lit};
-use crate::settings::Shading;
+use super::shading::{Shine, lit, lit_by_mean};
 use crate::settings::splatting::{Normalization, Shade};
+use crate::settings::{Settings, Shading};
 use glam::{DVec2, DVec3};
 
 /// Length of `Σ w n` relative to `Σ w` below which the normals cancel; the direction to the eye replaces them.
@@ -68,26 +68,37 @@ pub(super) fn resolve(projector: &Projector, at: DVec2, sums: Option<&Sums>, alp
     let shown = match settings.shading {
         // The splats are shaded already.
         Shading::Lit if settings.splatting.shade == Shade::Splat => colour,
-        Shading::Lit => lit(&settings.lighting, Shine::of_frame(&settings.lighting), colour, normal, viewer),
+        Shading::Lit => {
+            let (lighting, shine) = (&settings.lighting, Shine::of_frame(&settings.lighting));
+            match settings.splatting.shade {
+                Shade::MeanNormal => {
+                    lit_by_mean(lighting, shine, colour, normal, sums.normal / sums.weight, viewer)
+                }
+                Shade::Splat | Shade::Pixel => lit(lighting, shine, colour, normal, viewer),
+            }
+        }
         Shading::Colour => colour,
         Shading::Normal => normal,
         Shading::Depth => DVec3::splat(depth),
         Shading::Overlap | Shading::Weight => DVec3::splat(sums.weight),
     };
-    Value {
-        covered: true,
-        colour: over_background(projector, shown, alpha),
-        depth,
-        normal: normal.to_array(),
+    Value { covered: true, colour: picture_pixel(projector, shown, alpha), depth, normal: normal.to_array() }
+}
+
+/// A pixel of the picture; the pass `filter` blends filtered pixels with the background itself.
+pub(super) fn picture_pixel(projector: &Projector, shown: DVec3, alpha: f64) -> [f64; 4] {
+    match projector.settings.filter_radius() {
+        0 => blended(&projector.settings, shown, alpha),
+        _ => shown.extend(alpha).to_array(),
     }
 }
 
 /// Blends a value with the background, if there is one.
-pub(super) fn over_background(projector: &Projector, shown: DVec3, alpha: f64) -> [f64; 4] {
-    let Some(background) = projector.settings.background else { return shown.extend(alpha).to_array() };
+pub(super) fn blended(settings: &Settings, shown: DVec3, alpha: f64) -> [f64; 4] {
+    let Some(background) = settings.background else { return shown.extend(alpha).to_array() };
     let behind = DVec3::from_array(background.map(f64::from));
     // Quantities are not blended with a colour: α ≥ ½ decides.
-    let share = match projector.settings.shading {
+    let share = match settings.shading {
         Shading::Lit | Shading::Colour => alpha,
         Shading::Normal | Shading::Depth | Shading::Overlap | Shading::Weight => f64::from(alpha >= 0.5),
     };
@@ -97,8 +108,8 @@ pub(super) fn over_background(projector: &Projector, shown: DVec3, alpha: f64) -
 /// The value of an empty pixel.
 pub(super) fn uncovered(projector: &Projector) -> Value {
     let colour = match projector.settings.background {
-        Some([r, g, b]) => [r.into(), g.into(), b.into(), 1.0],
-        None => [0.0; 4],
+        Some([r, g, b]) if projector.settings.filter_radius() == 0 => [r.into(), g.into(), b.into(), 1.0],
+        _ => [0.0; 4],
     };
     Value { covered: false, colour, depth: 0.0, normal: [0.0; 3] }
 }

@@ -30,7 +30,19 @@ impl From<Material> for Shine {
 /// Shades a surface of linear colour `albedo`. `normal` and `viewer`, from the surface to the eye, are unit vectors in
 /// world space.
 pub(crate) fn lit(lighting: &Lighting, shine: Shine, albedo: DVec3, normal: DVec3, viewer: DVec3) -> DVec3 {
-    by_cosines(lighting, shine, albedo, viewer, |towards| normal.dot(towards))
+    lit_by_mean(lighting, shine, albedo, normal, normal, viewer)
+}
+
+/// As [`lit`], with diffuse light by `mean`, a mean of unit normals, and highlights by its direction `normal`.
+pub(crate) fn lit_by_mean(
+    lighting: &Lighting,
+    shine: Shine,
+    albedo: DVec3,
+    normal: DVec3,
+    mean: DVec3,
+    viewer: DVec3,
+) -> DVec3 {
+    by_cosines(lighting, shine, albedo, viewer, |towards| mean.dot(towards), |towards| normal.dot(towards))
 }
 
 /// Shades a line with unit `tangent`. For each light it takes the normal across the line that gives the brightest
@@ -42,7 +54,8 @@ pub(crate) fn lit_line(
     tangent: DVec3,
     viewer: DVec3,
 ) -> DVec3 {
-    by_cosines(lighting, shine, albedo, viewer, |towards| line_normal(tangent, towards).dot(towards))
+    let cosine = |towards: DVec3| line_normal(tangent, towards).dot(towards);
+    by_cosines(lighting, shine, albedo, viewer, cosine, cosine)
 }
 
 /// The normal across a line that is closest to the direction `towards`; both arguments are unit vectors.
@@ -50,25 +63,28 @@ pub(crate) fn line_normal(tangent: DVec3, towards: DVec3) -> DVec3 {
     (towards - towards.dot(tangent) * tangent).try_normalize().unwrap_or(towards)
 }
 
-/// Blinn–Phong, given the cosine of the angle between the surface's normal and a direction.
+/// Blinn–Phong, given the cosine of the angle between the surface's normal and a direction: `lambert` for diffuse light, `cosine` for
+/// highlights.
 fn by_cosines(
     lighting: &Lighting,
     Shine { specular, shininess }: Shine,
     albedo: DVec3,
     viewer: DVec3,
+    lambert: impl Fn(DVec3) -> f64,
     cosine: impl Fn(DVec3) -> f64,
 ) -> DVec3 {
     let [ambient, headlight] = [lighting.ambient, lighting.headlight].map(f64::from);
     // The headlight is at the eye: light, half-way and view directions coincide.
     let facing = cosine(viewer).max(0.0);
-    let mut light = albedo * (ambient + headlight * facing) + specular * facing.powf(shininess);
+    let mut light =
+        albedo * (ambient + headlight * lambert(viewer).max(0.0)) + specular * facing.powf(shininess);
     for lamp in &lighting.directional {
         let to_light = DVec3::from_array(lamp.to_light.map(f64::from));
-        let lambert = cosine(to_light);
-        if lambert > 0.0 {
+        let diffuse = lambert(to_light);
+        if diffuse > 0.0 {
             let half = cosine((to_light + viewer).normalize_or_zero()).max(0.0);
             let radiance = DVec3::from_array(lamp.radiance.map(f64::from));
-            light += radiance * (albedo * lambert + specular * half.powf(shininess));
+            light += radiance * (albedo * diffuse + specular * half.powf(shininess));
         }
     }
     light
@@ -108,6 +124,20 @@ mod tests {
         let side = 0.5 * lambert + specular;
         assert!(near(shade(&lighting, 60.0), [0.3 + side, 0.3 + 0.5 * side, 0.3]));
         assert!(near(shade(&lighting, -60.0), [0.3; 3]), "the light is below the horizon");
+    }
+
+    /// Two normals at ±60° to the eye: their mean points to the eye and has length ½.
+    #[test]
+    fn diffuse_light_of_a_mean_normal_is_the_mean_of_the_light() {
+        let lighting = Lighting { specular: 0.2, shininess: 2.0, ..Default::default() };
+        let (shine, albedo) = (Shine::of_frame(&lighting), DVec3::splat(0.5));
+        let normals = [1.0, -1.0].map(|side| DVec3::new(side * 0.75f64.sqrt(), 0.0, 0.5));
+        let mean = 0.5 * (normals[0] + normals[1]);
+        let by_mean = lit_by_mean(&lighting, shine, albedo, mean.normalize(), mean, DVec3::Z);
+        let dull = Lighting { specular: 0.0, ..lighting.clone() };
+        let of_each = normals.map(|n| lit(&dull, Shine::of_frame(&dull), albedo, n, DVec3::Z));
+        let highlight = DVec3::splat(0.2);
+        assert!(by_mean.abs_diff_eq(0.5 * (of_each[0] + of_each[1]) + highlight, 1e-7), "{by_mean}");
     }
 
     #[test]

@@ -89,6 +89,11 @@ impl Limits {
         Self { limit, depth_shown }
     }
 
+    /// Largest difference of a colour that passes.
+    pub fn colour(&self) -> f64 {
+        self.limit.colour
+    }
+
     /// The differences of `a` from `b`, the reference.
     pub fn differences(&self, a: &Value, b: &Value) -> Differences {
         let unit = if b.depth == 0.0 { 1.0 } else { b.depth.abs() };

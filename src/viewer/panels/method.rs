@@ -75,7 +75,7 @@ fn parameters(ui: &mut Ui, settings: &mut Settings) {
     let slider = |ui: &mut Ui, value: &mut f32, range: RangeInclusive<f32>, name: &str, text: &str| {
         ui.add(Slider::new(value, range).clamping(SliderClamping::Edits).text(name)).on_hover_text(text);
     };
-    let Settings { splatting, cutoff, lowpass, epsilon, widen, .. } = settings;
+    let Settings { splatting, cutoff, lowpass, pixel_filter, epsilon, widen, .. } = settings;
     slider(
         ui,
         cutoff,
@@ -91,6 +91,13 @@ fn parameters(ui: &mut Ui, settings: &mut Settings) {
                 .on_hover_text("Only splats smaller than the filter; larger ones stay sharper.");
         });
     });
+    slider(
+        ui,
+        pixel_filter,
+        0.0..=2.0,
+        "pixel filter, px²",
+        "Variance of a Gaussian after shading, which also smooths edges. The low-pass filter has the rest of its own variance.",
+    );
     ui.add_enabled_ui(splatting.visibility != Visibility::Nearest, |ui| {
         slider(
             ui,

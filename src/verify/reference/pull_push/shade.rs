@@ -1,6 +1,6 @@
 //! Pass `shade`: shades the picture pixel by pixel (marroquim2008 section 3.4).
 
-use super::super::normalize::{Value, over_background, uncovered};
+use super::super::normalize::{Value, picture_pixel, uncovered};
 use super::super::{Frame, Shine, line_normal, lit, lit_line};
 use super::{Decisions, Level, PassProgress, Reconstruction, Sample, coverage, texture};
 use crate::settings::pull_push::Rules;
@@ -77,6 +77,6 @@ fn value(frame: &Reconstruction, sample: &Sample, at: DVec2, alpha: f64) -> Valu
         // A pixel shows one point, or the reconstruction of several.
         Shading::Overlap | Shading::Weight => DVec3::ONE,
     };
-    let colour = over_background(projector, shown, alpha);
+    let colour = picture_pixel(projector, shown, alpha);
     Value { covered: true, colour, depth, normal: normal.to_array() }
 }
