@@ -6,6 +6,12 @@
 
 layout(constant_id = 14) const bool WIDEN_SMALL = false; // the low-pass filter widens only axes shorter than itself
 layout(constant_id = 16) const bool CONFETTI = false; // the kernel is ψ_E
+layout(constant_id = 67) const bool COVERAGE_FOOTPRINT = false; // α is coverage: visibility's footprint is that of the solid part
+
+// Solid part of a footprint: discs are 1.3 times as large as needed, to leave no holes.
+const float SOLID = 0.77;
+// Half the side of a pixel, px.
+const float HALF_PIXEL = 0.5;
 
 struct Splat {
     vec2 offset;         // centre of the variance's ellipse relative to the anchor, px
@@ -110,16 +116,20 @@ float stretch_of(Splat splat, vec2 variance, float key_centre) {
     return rim() * min(MOST_STRETCH, 1.0001 / max(1.0 - rise, 0.5));
 }
 
-// Variances of the two footprints along V's axes, px², from V's eigenvalues. Visibility's is just wide enough to contain a pixel centre.
-// Attribute's is V + H; with WIDEN_SMALL the larger of H and visibility's. It is at least visibility's, so that every visible pixel has
-// attributes.
+// Variances of the two footprints along V's axes, px², from V's eigenvalues. Visibility's is just wide enough to contain a pixel centre; if α
+// is coverage, its semi-axes are those of the solid part (lib/coverage.glsl) and half a pixel, so that it contains the centres of pixels of
+// which that covers samples. Attribute's is V + H; with WIDEN_SMALL the larger of H and V as widened by a mask's visibility. It is at least
+// visibility's, so that every visible pixel has attributes.
 vec2 visibility_variance(vec2 variance) {
-    return variance + frame.visibility_lowpass;
+    if (!COVERAGE_FOOTPRINT) return variance + frame.visibility_lowpass;
+    vec2 deviation = SOLID * sqrt(variance) + HALF_PIXEL / frame.cutoff;
+    return max(deviation * deviation, frame.visibility_lowpass);
 }
 
 vec2 attribute_variance(vec2 variance) {
-    if (WIDEN_SMALL) return max(visibility_variance(variance), frame.attribute_lowpass);
-    return variance + frame.attribute_lowpass;
+    vec2 widened = variance + frame.attribute_lowpass;
+    if (WIDEN_SMALL) widened = max(variance + frame.visibility_lowpass, frame.attribute_lowpass);
+    return COVERAGE_FOOTPRINT ? max(widened, visibility_variance(variance)) : widened;
 }
 
 // √(|V| / |V'|) of the filtered variance V': the filter's factor of the kernel's amplitude. The product of both eigenvalues would overflow

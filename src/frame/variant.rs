@@ -292,6 +292,7 @@ impl Variant {
             .with(constant::PERSPECTIVE, self.perspective)
             .with(constant::CULL_BACK, self.cull_back)
             .with(constant::COVERAGE, self.coverage)
+            .with(constant::COVERAGE_FOOTPRINT, self.coverage)
             .with(constant::TEXTURE, self.texture.is_some())
             .with(constant::TEXELS, self.texture.map_or(0, |texels| texels as u32))
             .with(constant::MATERIALS, self.materials)

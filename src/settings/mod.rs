@@ -79,7 +79,7 @@ impl Settings {
     pub const MOST_PIXEL_FILTER: f32 = 4.0;
 
     /// Least low-pass variance at which every splat covers a pixel centre, px²: `(0.71 / F)²`, so that the cut-off radius is at least √½
-    /// px. The visibility footprint uses it.
+    /// px. The visibility footprint has at least this.
     pub fn least_lowpass(&self) -> f32 {
         (0.71 / self.cutoff).powi(2)
     }
