@@ -18,7 +18,7 @@ struct Splat {
     vec2 axis;           // unit major axis of the variance V
     float variance;      // V's larger eigenvalue, px²
     float axis_residual; // angle from `axis`, which is rounded, to V's axis, rad; CONFETTI, otherwise 0
-    uint anchor;         // packed anchor pixel and DRAWN_SPLAT: see pack_anchor
+    uint anchor;         // packed anchor pixel, DRAWN_SPLAT and BACK_SPLAT: see pack_anchor
     float epsilon;       // perspective: 1 / (1 + ε/z), a factor of κ; orthographic: ε as a difference of κ; negative if the normal faces away
     vec3 plane_hi;       // κ of the tangent plane (has_linear_depth: distance) at the anchor, and its derivatives along x and y, per px, as
                          // sums of two floats
@@ -30,6 +30,9 @@ struct Splat {
 #ifdef WRITES_SPLATS
 layout(set = 0, binding = 1, std430) writeonly buffer Splats { uvec4 splat_rows[]; };
 layout(set = 0, binding = 1, std430) writeonly buffer SplatLayout { Splat splats[]; };
+#elif defined(MODIFIES_SPLATS)
+layout(set = 0, binding = 1, std430) buffer Splats { uvec4 splat_rows[]; };
+#define splat_row(k) splat_rows[k]
 #elif defined(TILE_PASS) && defined(SUBGROUPS)
 layout(set = 1, binding = 17) uniform utextureBuffer splat_texels;
 #define splat_row(k) texelFetch(splat_texels, int(k))
@@ -58,11 +61,14 @@ void store_splat(uint index, Splat splat) {
     splat_rows[k + 3] = floatBitsToUint(vec4(splat.plane_lo, splat.key_disc));
 }
 
+#endif
+#if defined(WRITES_SPLATS) || defined(MODIFIES_SPLATS)
 // Marks the splat of a culled surfel.
 void store_culled(uint index) {
     splat_rows[4 * index + 1] = uvec4(0);
 }
-#elif !defined(FRAGMENT)
+#endif
+#if !defined(WRITES_SPLATS) && !defined(FRAGMENT)
 // Loads splat i of the instance, or of the frame's list.
 Splat splat_of(uint i) {
 #ifdef TILE_PASS
@@ -78,11 +84,13 @@ Splat splat_of(uint i) {
 }
 #endif
 
-const uint DRAWN_SPLAT = 1;
+const uint DRAWN_SPLAT = 1u << 30;
+// The surfel faces away, and pass sides decides whether it is drawn.
+const uint BACK_SPLAT = 1u << 31;
 
 // The anchor is the pixel nearest to the centre: offsets from it keep their digits on large viewports.
 uint pack_anchor(uvec2 pixel) {
-    return pixel.x | pixel.y << 15 | DRAWN_SPLAT << 30;
+    return pixel.x | pixel.y << 15 | DRAWN_SPLAT;
 }
 
 // Pixel centre of the anchor, px.
@@ -91,7 +99,11 @@ vec2 anchor_of(Splat splat) {
 }
 
 bool is_drawn(Splat splat) {
-    return splat.anchor >> 30 == DRAWN_SPLAT;
+    return (splat.anchor & DRAWN_SPLAT) != 0;
+}
+
+bool is_back(Splat splat) {
+    return (splat.anchor & BACK_SPLAT) != 0;
 }
 
 // V's eigenvalues, px²: their product is its determinant.

@@ -8,7 +8,7 @@ pub mod splatting;
 
 use crate::error::{Error, Result};
 use crate::settings::pull_push::PullPush;
-use crate::settings::splatting::{Filter, Splatting};
+use crate::settings::splatting::{Filter, Splatting, Visibility};
 pub use choice::Choice;
 pub use outputs::{Outputs, Precision, Rasterizer, RasterizerChoice, RasterizerReason};
 use std::ops::RangeInclusive;
@@ -131,6 +131,15 @@ impl Settings {
                 "pull-push has no splats: leave out footprint, kernel, filter, visibility, normalization and shade".into(),
             ));
         }
+        if self.cull == Cull::Auto
+            && (self.pull_push.is_some() || self.splatting.visibility == Visibility::Axis)
+        {
+            return Err(Error::Usage(
+                "the sides of a surface are found by splats along viewing rays: by pull-push, or with the visibility axis, choose the culling \
+                 none or back"
+                    .into(),
+            ));
+        }
         self.pull_push.map_or(Ok(()), PullPush::check)?;
         self.splatting.check()?;
         let positive = |name: &str, value: f32| {
@@ -226,6 +235,11 @@ pub enum Cull {
     None,
     /// Surfels whose normals face away are culled.
     Back,
+    /// Of the surfels whose normals face away, those of the far side of a closed surface are culled.
+    ///
+    /// These are surfels behind whose centres, or at most a radius before them, a surface faces the eye: culling equals `back` on closed
+    /// surfaces, and leaves open ones whole from behind. Other normals are flipped towards the eye.
+    Auto,
 }
 
 /// Meaning of α.
