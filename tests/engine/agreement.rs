@@ -124,7 +124,8 @@ fn every_case_with_sides() {
         (nearest, Alpha::Coverage),
     ];
     let by = |(i, (splatting, alpha)): (usize, (Splatting, Alpha))| {
-        let cases = with_axes(|case| Settings { splatting, alpha, cull: Cull::Auto, ..case.settings.clone() });
+        let cases =
+            with_axes(|case| Settings { splatting, alpha, cull: Cull::Auto, ..case.settings.clone() });
         failures(&cases, &sampled_views(i, 4), &format!("sides, {alpha:?}, {splatting:?}"))
     };
     assert_agree(all.into_iter().enumerate().flat_map(by).collect());

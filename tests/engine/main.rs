@@ -33,6 +33,7 @@ mod reference;
 mod scans;
 #[cfg(feature = "compile-shaders")]
 mod shaders;
+mod sides;
 mod sphere;
 #[path = "../support/mod.rs"]
 mod support;
