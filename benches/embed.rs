@@ -1,12 +1,12 @@
-//! Time of a host's frame with surfels in subpasses of its render pass, against surfels rendered off-screen and composited: the same
-//! scene in alternating frames, with a wall of the host in front of half of it or without.
+//! A host's frame with surfels in subpasses of its render pass, against surfels rendered off-screen and composited: the same scene, with a
+//! wall of the host in front of half of it or without.
 #![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
 
 #[path = "../tools/hosts/host/mod.rs"]
 mod host;
+mod support;
 
 use ash::vk;
-use cpu_time::ProcessTime;
 use glam::{DVec3, Vec3};
 use host::frame::{self, Frame, Way};
 use host::mesh::Mesh;
@@ -14,7 +14,8 @@ use host::native::{Kind, Native};
 use host::scene::{Corners, parallelogram};
 use host::{Host, Result, Validation};
 use std::sync::Arc;
-use std::time::Instant;
+use support::{Row, Table, whole};
+use surfel::bench::format;
 use surfel::embed::{self, Options, View};
 use surfel::geometry::Camera;
 use surfel::verify::scenes;
@@ -23,9 +24,6 @@ use surfel::{Rasterizer, Scene, Settings};
 
 /// Side of the picture, px.
 const SIDE: u32 = 1024;
-/// Timed frames, and warm-up frames before them.
-const FRAMES: usize = 15;
-const WARM_UP: usize = 2;
 
 const COLOUR: vk::Format = vk::Format::R8G8B8A8_SRGB;
 const ONE: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_1;
@@ -40,27 +38,14 @@ fn main() -> Result<()> {
         }
     };
     let device = host.external_device(None)?;
-    println!("{}, {}", device.description().name, device.description().driver);
-    println!("milliseconds a frame of {SIDE}², of {FRAMES}: median (least to most)");
-    println!(
-        "{:<12} {:<10} {:<22} {:>24} {:>24} {:>6}",
-        "points", "wall", "surfels", "CPU", "wall clock", "ratio"
-    );
+    let table = Table::new("a frame of 1024×1024 px of the bumpy sphere", Some(&device));
     for points in [100_000, 1_000_000] {
         let uploaded = UploadedScene::new(&host, &device, points)?;
-        for wall in [Wall::None, Wall::Half] {
-            uploaded.compare(points, wall)?;
+        for is_half_hidden in [false, true] {
+            uploaded.compare(&table, points, is_half_hidden)?;
         }
     }
     Ok(())
-}
-
-/// Geometry of the host in front of the surfels.
-#[derive(Clone, Copy, Debug)]
-enum Wall {
-    None,
-    /// Half of the view, nearer than all surfels.
-    Half,
 }
 
 /// An uploaded scene with its view.
@@ -70,9 +55,6 @@ struct UploadedScene<'a> {
     scene: Arc<Scene>,
     view: View,
 }
-
-/// Times of frames, ms: CPU time and wall time.
-type Times = [Vec<f64>; 2];
 
 impl<'a> UploadedScene<'a> {
     fn new(host: &'a Host, device: &Arc<Device>, points: u32) -> Result<Self> {
@@ -85,57 +67,38 @@ impl<'a> UploadedScene<'a> {
         Ok(Self { host, device: device.clone(), scene: Arc::new(scene), view })
     }
 
-    /// The wall's corners; behind all surfels for [`Wall::None`].
-    fn corners(&self, wall: Wall) -> Corners {
+    /// Corners of a wall before half of the view: nearer than all surfels, or else behind them.
+    fn corners(&self, is_half_hidden: bool) -> Corners {
         let back = self.view.camera.view.inverse();
         let eye = back.transform_point3(DVec3::ZERO);
         let bounds = self.scene.bounds();
         let forward = (bounds.centre() - eye).normalize();
         let right = forward.cross(back.transform_vector3(DVec3::Y)).normalize();
-        let distance = match wall {
-            Wall::Half => 0.5 * ((bounds.centre() - eye).length() - bounds.radius),
-            Wall::None => 2.0 * ((bounds.centre() - eye).length() + bounds.radius),
+        let distance = if is_half_hidden {
+            0.5 * ((bounds.centre() - eye).length() - bounds.radius)
+        } else {
+            2.0 * ((bounds.centre() - eye).length() + bounds.radius)
         };
         let sides = [distance * right, distance * forward.cross(right)].map(|side| side.as_vec3());
         parallelogram((eye + distance * (forward - right)).as_vec3(), sides)
     }
 
-    fn compare(&self, points: u32, wall: Wall) -> Result<()> {
-        let settings = Settings::default();
-        let composited = [Rasterizer::Draw, Rasterizer::Compute]
-            .map(|rasterizer| Composited::new(self, wall, rasterizer))
-            .into_iter()
-            .collect::<Result<Vec<_>>>()?;
-        let native = [false, true]
-            .map(|seed| InSubpasses::new(self, wall, seed, &settings))
-            .into_iter()
-            .collect::<Result<Vec<_>>>()?;
-        let [mut composited, mut native] = [Kinds::Composited(composited), Kinds::Native(native)];
-        let mut times: [Times; 4] = Default::default();
-        for number in 0..WARM_UP + FRAMES {
-            for (kind, times) in times.iter_mut().enumerate() {
-                let kinds = if kind < 2 { &mut composited } else { &mut native };
-                let (start, spent) = (Instant::now(), ProcessTime::now());
-                kinds.frame(self, kind % 2, &settings)?;
-                let found = [spent.elapsed(), start.elapsed()].map(|time| 1e3 * time.as_secs_f64());
-                if number >= WARM_UP {
-                    times.iter_mut().zip(found).for_each(|(times, found)| times.push(found));
-                }
-            }
-        }
-        composited.destroy(self.host);
-        native.destroy(self.host);
-        let first = median(&times[0][0]);
-        let names = ["off-screen, drawn", "off-screen, computed", "subpasses", "subpasses, seeded"];
-        for (name, [cpu, clock]) in names.into_iter().zip(&times) {
-            let wall = format!("{wall:?}").to_lowercase();
-            println!(
-                "{points:<12} {wall:<10} {name:<22} {:>24} {:>24} {:>6.2}",
-                spread(cpu),
-                spread(clock),
-                median(cpu) / first
-            );
-        }
+    fn compare(&self, table: &Table, points: u32, is_half_hidden: bool) -> Result<()> {
+        let (corners, settings) = (self.corners(is_half_hidden), &Settings::default());
+        let mut drawn = Composited::new(self, &corners, Rasterizer::Draw)?;
+        let mut computed = Composited::new(self, &corners, Rasterizer::Compute)?;
+        let mut plain = InSubpasses::new(self, &corners, false, settings)?;
+        let mut seeded = InSubpasses::new(self, &corners, true, settings)?;
+        let wall = if is_half_hidden { "wall" } else { "no wall" };
+        let name = |kind: &str| format!("{} points, {wall}, {kind}", format::count(points.into()));
+        table.compare(vec![
+            Row::new(name("off-screen, raster path"), whole(|| drawn.frame(self, settings))),
+            Row::new(name("off-screen, compute path"), whole(|| computed.frame(self, settings))),
+            Row::new(name("subpasses"), whole(|| plain.frame(self, settings))),
+            Row::new(name("subpasses, seeded"), whole(|| seeded.frame(self, settings))),
+        ])?;
+        [drawn, computed].into_iter().for_each(|one| one.destroy(self.host));
+        [plain, seeded].into_iter().for_each(|one| one.destroy(self.host));
         Ok(())
     }
 }
@@ -153,17 +116,12 @@ struct InSubpasses {
     mesh: Mesh,
 }
 
-enum Kinds {
-    Composited(Vec<Composited>),
-    Native(Vec<InSubpasses>),
-}
-
 impl Composited {
-    fn new(uploaded: &UploadedScene<'_>, wall: Wall, rasterizer: Rasterizer) -> Result<Self> {
+    fn new(uploaded: &UploadedScene<'_>, corners: &Corners, rasterizer: Rasterizer) -> Result<Self> {
         let kind =
             frame::Kind { way: Way::Subpass, colour: COLOUR, normals: false, samples: ONE, reversed: true };
         let frame = Frame::new(uploaded.host, kind, [SIDE; 2])?;
-        let mesh = Mesh::new(uploaded.host, &uploaded.corners(wall), frame.mesh_target())?;
+        let mesh = Mesh::new(uploaded.host, corners, frame.mesh_target())?;
         let options =
             Options { frames_in_flight: 1, rasterizer: rasterizer.into(), ..Options::new(frame.target()) };
         // SAFETY: the target belongs to the frame, which is destroyed after the renderer.
@@ -186,10 +144,16 @@ impl Composited {
             Ok(())
         })
     }
+
+    fn destroy(self, host: &Host) {
+        drop(self.renderer);
+        self.mesh.destroy(host);
+        self.frame.destroy(host);
+    }
 }
 
 impl InSubpasses {
-    fn new(uploaded: &UploadedScene<'_>, wall: Wall, seed: bool, settings: &Settings) -> Result<Self> {
+    fn new(uploaded: &UploadedScene<'_>, corners: &Corners, seed: bool, settings: &Settings) -> Result<Self> {
         let kind = Kind {
             colour: COLOUR,
             depth: Some(frame::DEPTH),
@@ -201,7 +165,7 @@ impl InSubpasses {
         };
         let frames = [(uploaded.scene.streams(), settings)];
         let native = Native::new(uploaded.host, &uploaded.device, kind, [SIDE; 2], &frames)?;
-        let mesh = Mesh::new(uploaded.host, &uploaded.corners(wall), native.mesh_target())?;
+        let mesh = Mesh::new(uploaded.host, corners, native.mesh_target())?;
         Ok(Self { native, mesh })
     }
 
@@ -215,42 +179,9 @@ impl InSubpasses {
             }
         })
     }
-}
-
-impl Kinds {
-    fn frame(&mut self, uploaded: &UploadedScene<'_>, number: usize, settings: &Settings) -> Result<()> {
-        match self {
-            Self::Composited(list) => list[number].frame(uploaded, settings),
-            Self::Native(list) => list[number].frame(uploaded, settings),
-        }
-    }
 
     fn destroy(self, host: &Host) {
-        match self {
-            Self::Composited(list) => list.into_iter().for_each(|one| {
-                drop(one.renderer);
-                one.mesh.destroy(host);
-                one.frame.destroy(host);
-            }),
-            Self::Native(list) => list.into_iter().for_each(|one| {
-                one.mesh.destroy(host);
-                one.native.destroy(host);
-            }),
-        }
+        self.mesh.destroy(host);
+        self.native.destroy(host);
     }
-}
-
-fn sorted(times: &[f64]) -> Vec<f64> {
-    let mut times = times.to_vec();
-    times.sort_by(f64::total_cmp);
-    times
-}
-
-fn median(times: &[f64]) -> f64 {
-    sorted(times)[times.len() / 2]
-}
-
-fn spread(times: &[f64]) -> String {
-    let times = sorted(times);
-    format!("{:.1} ({:.1}–{:.1})", median(&times), times[0], times[times.len() - 1])
 }

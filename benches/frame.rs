@@ -1,79 +1,70 @@
-//! Whole frames as an application waits for them: after the upload, and without the allocations of the first frame.
+//! Frames as an application waits for them: after the upload, and without the allocations of the first one.
+//!
+//! usage: `cargo bench --bench frame [-- INPUT…]`: PLY files or built-in scenes; the default is the bumpy sphere with 100 000 and with
+//! 1 000 000 points, and a scan if it is present.
 
-use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
+mod support;
+
 use std::path::Path;
+use std::rc::Rc;
 use std::sync::Arc;
-use std::time::Duration;
-use surfel::formats;
-use surfel::geometry::{Camera, Surfels};
-use surfel::settings::Shading;
+use support::{Result, Row, Table, frames};
+use surfel::bench::engine::DeviceEngine;
+use surfel::geometry::{Camera, Parts};
+use surfel::load::load;
+use surfel::settings::{Alpha, Cull, Shading};
 use surfel::verify::scenes;
-use surfel::vk::{Device, DeviceOptions};
-use surfel::{Rasterizer, RenderOptions, Renderer, Scene, Settings};
+use surfel::vk::Device;
+use surfel::{Precision, Rasterizer, Scene, Settings};
 
-/// Side of the picture, px.
-const SIDE: u32 = 1024;
+const SIZE: [u32; 2] = [1024; 2];
 
-criterion_group!(benches, perspective_ewa);
-criterion_main!(benches);
-
-/// Each scene with each rasterizer of the device.
-fn perspective_ewa(criterion: &mut Criterion) {
-    let device = match Device::open(&DeviceOptions::default()) {
-        Ok(device) => device,
-        Err(error) => return eprintln!("SKIPPED: {error}"),
-    };
-    eprintln!("{}, {}", device.description().name, device.description().driver);
-
-    let mut group = criterion.benchmark_group("perspective-ewa");
-    group.sample_size(10).sampling_mode(SamplingMode::Flat);
-    group.warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(3));
-    for (name, surfels) in inputs() {
-        let camera = framing(&surfels);
-        let scene = Scene::upload(&device, &surfels).expect("the scene is uploaded");
-        group.throughput(Throughput::Elements(surfels.len() as u64));
-        for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
-            let id = BenchmarkId::new(format!("{rasterizer:?}").to_lowercase(), name);
-            let Some(mut renderer) = renderer(&device, rasterizer) else { continue };
-            let settings = Settings { shading: Shading::Colour, ..Default::default() };
-            let mut frame = || renderer.render(&scene, &camera, &settings).expect("the frame is rendered");
-            group.bench_function(id, |bencher| bencher.iter(&mut frame));
-        }
-    }
-    group.finish();
+fn main() -> Result<()> {
+    let Some(device) = support::device() else { return Ok(()) };
+    let table = Table::new("a frame of 1024×1024 px in the points' colours on white", Some(&device));
+    let given: Vec<String> =
+        std::env::args().skip(1).filter(|argument| !argument.starts_with("--")).collect();
+    let inputs = if given.is_empty() { defaults() } else { given };
+    inputs.iter().try_for_each(|input| measure(&table, &device, input))
 }
 
-/// The comparison scene with two numbers of points, and a small scan if it is present.
-fn inputs() -> Vec<(&'static str, Surfels)> {
-    let sphere = |points: u32| {
-        scenes::open(&format!("scene:bumpy-sphere?points={points}")).expect("the scene is a built-in one")
-    };
-    let mut inputs = vec![("sphere-100k", sphere(100_000)), ("sphere-1m", sphere(1_000_000))];
+fn defaults() -> Vec<String> {
     let scan = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/classic/bunny16k.ply");
-    if scan.exists() {
-        inputs.push((
-            "bunny16k",
-            formats::read(&scan, &Default::default(), &())
-                .expect("the scan is read")
-                .cloud
-                .into_surfels(&Default::default(), &())
-                .expect("it has normals and radii")
-                .0,
-        ))
-    } else {
-        eprintln!("SKIPPED: there is no {}", scan.display())
+    if !scan.exists() {
+        eprintln!("SKIPPED: there is no {}", scan.display());
     }
-    inputs
+    let scan = scan.exists().then(|| scan.display().to_string());
+    let spheres = [100_000, 1_000_000].map(|points| format!("scene:bumpy-sphere?points={points}"));
+    scan.into_iter().chain(spheres).collect()
 }
 
-/// A camera that shows the whole scene.
-fn framing(surfels: &Surfels) -> Camera {
-    let bounds = surfels.bounds().expect("the scene has points");
-    Camera::framing(&bounds, 45f64.to_radians(), 1.0).expect("the scene can be framed")
+/// Options, as of `surfel render`, with the frames that they mean.
+fn variants() -> [(&'static str, Rasterizer, Settings); 5] {
+    let default = || Settings { shading: Shading::Colour, background: Some([1.0; 3]), ..Settings::default() };
+    [
+        ("", Rasterizer::Compute, default()),
+        (", `--lowpass 0`", Rasterizer::Compute, Settings { lowpass: 0.0, ..default() }),
+        (", `--cull back`", Rasterizer::Compute, Settings { cull: Cull::Back, ..default() }),
+        (", `--alpha coverage`", Rasterizer::Compute, Settings { alpha: Alpha::Coverage, ..default() }),
+        (", `--rasterizer draw`", Rasterizer::Draw, default()),
+    ]
 }
 
-/// `None`, with a message, if the device does not support it.
-fn renderer(device: &Arc<Device>, rasterizer: Rasterizer) -> Option<Renderer> {
-    let options = RenderOptions { size: [SIDE, SIDE], rasterizer: rasterizer.into(), ..Default::default() };
-    Renderer::new(device, options).map_err(|error| eprintln!("SKIPPED: {error}")).ok()
+fn measure(table: &Table, device: &Arc<Device>, input: &str) -> Result<()> {
+    let model = load(&[input], &Default::default(), &())?.model;
+    let bounds = Parts::from(&model).bounds().ok_or("the input holds nothing that can be drawn")?;
+    let camera = if scenes::is_scene(input) {
+        scenes::camera(input)?.camera(1.0, &bounds)?
+    } else {
+        Camera::framing(&bounds, 45f64.to_radians(), 1.0)?
+    };
+    let scene = Rc::new(Scene::upload(device, &model)?);
+    let name = Path::new(input).file_stem().filter(|_| !scenes::is_scene(input));
+    let name = name.map_or_else(|| format!("`{input}`"), |name| name.to_string_lossy().into_owned());
+    let row = |(option, rasterizer, settings): (&str, Rasterizer, Settings)| {
+        let engine = DeviceEngine::new(device, scene.clone(), SIZE, rasterizer.into(), Precision::Full)?;
+        let row = Row::new(name.clone() + option, frames(engine, camera, settings));
+        Ok(row.of(model.surfels.len(), " points/s"))
+    };
+    table.compare(variants().into_iter().map(row).collect::<Result<_>>()?)
 }

@@ -1,91 +1,125 @@
-//! Time of a host's frame of several scenes against one scene with the same surfels: recording, and the whole frame.
+//! A host's frames of several scenes and of many instances, against one scene with the same surfels.
 #![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
 
 #[path = "../tools/hosts/host/mod.rs"]
 mod host;
+#[path = "support/stand.rs"]
+mod stand;
+mod support;
 
-use ash::vk;
-use cpu_time::{ProcessTime, ThreadTime};
-use glam::{DMat4, DVec3};
-use host::frame::{Frame, Kind, Way};
+use glam::{DMat4, DQuat, DVec3};
 use host::scene::{camera, sphere};
-use host::{Host, Result, Validation};
-use std::sync::Arc;
-use std::time::{Duration, Instant};
-use surfel::embed::{self, Options, Renderer, View};
-use surfel::geometry::Surfels;
+use stand::Stand;
+use std::ops::Range;
+use support::{Result, Row, Table, whole};
+use surfel::embed::View;
+use surfel::geometry::{Camera, Colours, Surfels};
+use surfel::settings::Choice;
 use surfel::settings::methods::Method;
-use surfel::vk::Device;
-use surfel::{Instance, Rasterizer, Scene, Settings};
+use surfel::verify::scenes::bumpy_sphere;
+use surfel::{Instance, Rasterizer, Settings};
 
-/// Width and height of the picture, px.
-const SIZE: [u32; 2] = [1024; 2];
+/// Surfels, and number of scenes that they are divided into.
 const POINTS: usize = 200_000;
-/// Number of scenes that the surfels are divided into.
 const PARTS: usize = 8;
-/// Recorded frames, rendered frames, and warm-up frames before them.
-const RECORDED: usize = 1_000;
-const RENDERED: usize = 15;
-const WARM_UP: usize = 3;
+/// Many instances, and surfels of each.
+const INSTANCES: usize = 1024;
+const SURFELS: u32 = 50;
+const LARGE: [u32; 2] = [1024; 2];
+const SMALL: [u32; 2] = [64; 2];
+
+/// A name, and instances that are rendered together.
+type Kind = (String, Vec<Instance>);
 
 fn main() -> Result<()> {
-    let host = match Host::open_with(|all| all, Validation::Off, &[], &[]) {
-        Ok(host) => host,
-        Err(error) => {
-            eprintln!("SKIPPED: {error}");
-            return Ok(());
-        }
-    };
-    let device = host.external_device(None)?;
-    println!("{}, {}", device.description().name, device.description().driver);
-    println!("{POINTS} points, {}x{} px: median", SIZE[0], SIZE[1]);
-    println!("{:<30} {:<24} {:>14} {:>10} {:>10}", "", "scenes", "recording, µs", "CPU, ms", "clock, ms");
-    let frame = Frame::new(&host, KIND, SIZE)?;
-    let stand = Stand { host: &host, device, frame: &frame };
-    let kinds = stand.kinds()?;
-    for method in ["perspective-ewa", "sprites", "sprites-unfiltered", "pull-push"] {
-        let settings = Method::named(method).ok_or("no such method")?.settings();
-        for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
-            let name = format!("{method}, {}", format!("{rasterizer:?}").to_lowercase());
-            stand.compare(&name, &kinds, &settings, rasterizer)?;
-        }
+    let Some(stand) = Stand::open(LARGE)? else { return Ok(()) };
+    let about = format!(
+        "a frame of {POINTS} surfels in 1024×1024 px, and of {INSTANCES} instances of {SURFELS} surfels in 64×64 px"
+    );
+    let table = Table::new(&about, Some(&stand.device));
+    let (kinds, view) = (divided(&stand)?, View::whole(camera(0.0, LARGE)?, LARGE));
+    for name in ["perspective-ewa", "sprites", "sprites-unfiltered", "pull-push"] {
+        let settings = Method::named(name).ok_or("no such method")?.settings();
+        compare(&table, &stand, name, &kinds, (&view, &settings))?;
     }
-    drop((kinds, stand));
-    frame.destroy(&host);
+    drop(kinds);
+    stand.close();
+
+    let Some(stand) = Stand::open(SMALL)? else { return Ok(()) };
+    let camera = Camera::look_at(DVec3::new(0.0, 0.0, 60.0), DVec3::ZERO, DVec3::Y, 0.9, 1.0, 1.0)?;
+    let (kinds, view) = (many(&stand)?, View::whole(camera, SMALL));
+    compare(&table, &stand, "perspective-ewa", &kinds, (&view, &Settings::default()))?;
+    drop(kinds);
+    stand.close();
     Ok(())
 }
 
-const KIND: Kind = Kind {
-    way: Way::Subpass,
-    colour: vk::Format::R8G8B8A8_SRGB,
-    normals: false,
-    samples: vk::SampleCountFlags::TYPE_1,
-    reversed: true,
-};
-
-struct Stand<'a> {
-    host: &'a Host,
-    device: Arc<Device>,
-    frame: &'a Frame,
+/// Times each kind by both rasterizers, relative to the first.
+fn compare(
+    table: &Table,
+    stand: &Stand,
+    name: &str,
+    kinds: &[Kind],
+    (view, settings): (&View, &Settings),
+) -> Result<()> {
+    for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
+        let row = |(kind, instances): &Kind| {
+            let (mut renderer, instances) = (stand.renderer(rasterizer)?, instances.clone());
+            let frame =
+                move || stand.host.run(|cmd| stand.record(cmd, &mut renderer, &instances, view, settings));
+            Ok(Row::new(format!("{name}, {}, {kind}", rasterizer.name()), whole(frame)))
+        };
+        table.compare(kinds.iter().map(row).collect::<Result<_>>()?)?;
+    }
+    Ok(())
 }
 
-/// Transform of instances whose surfels were transformed by its inverse.
-fn place() -> DMat4 {
-    DMat4::from_scale_rotation_translation(
+/// The same surfels as one scene, as one instance, as several scenes, and as several instances.
+fn divided(stand: &Stand) -> Result<Vec<Kind>> {
+    let all = sphere(POINTS as u32);
+    let part = |k: usize| subset(&all, k * POINTS / PARTS..(k + 1) * POINTS / PARTS);
+    let placement = DMat4::from_scale_rotation_translation(
         DVec3::splat(2.0),
-        glam::DQuat::from_rotation_y(1.0),
+        DQuat::from_rotation_y(1.0),
         DVec3::new(3.0, 0.0, -1.0),
-    )
+    );
+    let plain = |surfels: &Surfels| Ok(Instance::new(&stand.upload(surfels)?, DMat4::IDENTITY));
+    let placed = |surfels: &Surfels| {
+        let moved = transformed(surfels, placement.inverse());
+        Ok(Instance::new(&stand.upload(&moved)?, placement))
+    };
+    let several = |make: &dyn Fn(&Surfels) -> Result<Instance>| {
+        (0..PARTS).map(|k| make(&part(k))).collect::<Result<Vec<_>>>()
+    };
+    Ok(vec![
+        ("one".into(), vec![plain(&all)?]),
+        ("one, placed".into(), vec![placed(&all)?]),
+        (format!("{PARTS}"), several(&plain)?),
+        (format!("{PARTS}, placed"), several(&placed)?),
+    ])
 }
 
-fn subset(surfels: &Surfels, range: std::ops::Range<usize>) -> Surfels {
+/// Instances on a grid, each with another rotation, and the same surfels as one scene.
+fn many(stand: &Stand) -> Result<Vec<Kind>> {
+    let placement = |i: usize| {
+        let [x, y] = [i % 32, i / 32].map(|k| 1.7 * (k as f64 - 15.5));
+        DMat4::from_rotation_translation(DQuat::from_rotation_y(i as f64), DVec3::new(x, y, 0.0))
+    };
+    let surfels = bumpy_sphere::sample(SURFELS, 1);
+    let all: Vec<_> = (0..INSTANCES).map(|i| transformed(&surfels, placement(i))).collect();
+    let merged = stand.upload(&Surfels::merge(all, [1.0; 3])?)?;
+    let scene = stand.upload(&surfels)?;
+    let instances = (0..INSTANCES).map(|i| Instance::new(&scene, placement(i)));
+    Ok(vec![
+        ("merged".into(), vec![Instance::new(&merged, DMat4::IDENTITY)]),
+        (format!("{INSTANCES} instances"), instances.collect()),
+    ])
+}
+
+fn subset(surfels: &Surfels, range: Range<usize>) -> Surfels {
     let colours = surfels.colours.as_ref().map(|colours| match colours {
-        surfel::geometry::Colours::Srgb8(all) => {
-            surfel::geometry::Colours::Srgb8(all[range.clone()].to_vec())
-        }
-        surfel::geometry::Colours::Linear(all) => {
-            surfel::geometry::Colours::Linear(all[range.clone()].to_vec())
-        }
+        Colours::Srgb8(all) => Colours::Srgb8(all[range.clone()].to_vec()),
+        Colours::Linear(all) => Colours::Linear(all[range.clone()].to_vec()),
     });
     Surfels {
         positions: surfels.positions[range.clone()].to_vec(),
@@ -96,114 +130,16 @@ fn subset(surfels: &Surfels, range: std::ops::Range<usize>) -> Surfels {
     }
 }
 
-/// The surfels transformed by the inverse of `place`.
-fn taken(mut surfels: Surfels) -> Surfels {
-    let back = place().inverse();
+/// Surfels moved, turned and scaled.
+fn transformed(surfels: &Surfels, by: DMat4) -> Surfels {
+    let mut surfels = surfels.clone();
     for position in &mut surfels.positions {
-        *position = back.transform_point3(position.as_dvec3()).as_vec3();
+        *position = by.transform_point3(position.as_dvec3()).as_vec3();
     }
     for normal in &mut surfels.normals {
-        *normal = back.transform_vector3(normal.as_dvec3()).normalize().as_vec3();
+        *normal = by.transform_vector3(normal.as_dvec3()).normalize().as_vec3();
     }
-    surfels.radii.iter_mut().for_each(|radius| *radius *= 0.5);
+    let scale = by.determinant().cbrt() as f32;
+    surfels.radii.iter_mut().for_each(|radius| *radius *= scale);
     surfels
-}
-
-impl Stand<'_> {
-    fn upload(&self, surfels: &Surfels) -> Result<Arc<Scene>> {
-        // SAFETY: recorded outside a render pass; the staging memory stays until `run` has waited.
-        let uploaded = self.host.run(|cmd| Ok(unsafe { embed::upload(&self.device, cmd, surfels)? }));
-        uploaded.map(|(scene, _)| Arc::new(scene))
-    }
-
-    /// The same surfels as one scene, as one instance, as several scenes, and as several instances.
-    fn kinds(&self) -> Result<Vec<(String, Vec<Instance>)>> {
-        let all = sphere(POINTS as u32);
-        let part = |k: usize| subset(&all, k * POINTS / PARTS..(k + 1) * POINTS / PARTS);
-        let instance = |surfels: &Surfels, place| Ok(Instance::new(&self.upload(surfels)?, place));
-        let several =
-            |make: &dyn Fn(usize) -> Result<Instance>| (0..PARTS).map(make).collect::<Result<Vec<_>>>();
-        Ok(vec![
-            ("one".into(), vec![instance(&all, DMat4::IDENTITY)?]),
-            ("one, placed".into(), vec![instance(&taken(all.clone()), place())?]),
-            (format!("{PARTS}"), several(&|k| instance(&part(k), DMat4::IDENTITY))?),
-            (format!("{PARTS}, placed"), several(&|k| instance(&taken(part(k)), place()))?),
-        ])
-    }
-
-    fn compare(
-        &self,
-        name: &str,
-        kinds: &[(String, Vec<Instance>)],
-        settings: &Settings,
-        rasterizer: Rasterizer,
-    ) -> Result<()> {
-        let options = Options {
-            frames_in_flight: 1,
-            rasterizer: rasterizer.into(),
-            ..Options::new(self.frame.target())
-        };
-        let mut renderers = Vec::new();
-        for _ in kinds {
-            // SAFETY: the target belongs to the frame, which outlives the renderer.
-            renderers.push(unsafe { Renderer::new(&self.device, options.clone())? });
-        }
-        let mut times: Vec<[Vec<f64>; 2]> = kinds.iter().map(|_| Default::default()).collect();
-        // Frames alternate, so that other load on the machine affects all alike.
-        for number in 0..WARM_UP + RENDERED {
-            for ((renderer, (_, list)), times) in renderers.iter_mut().zip(kinds).zip(&mut times) {
-                let (start, spent) = (Instant::now(), ProcessTime::now());
-                self.host.run(|cmd| self.record(cmd, renderer, list, settings, 0))?;
-                if number >= WARM_UP {
-                    let found = [spent.elapsed(), start.elapsed()];
-                    times
-                        .iter_mut()
-                        .zip(found)
-                        .for_each(|(times, time)| times.push(1e3 * time.as_secs_f64()));
-                }
-            }
-        }
-        for ((renderer, (kind, list)), [cpu, clock]) in renderers.iter_mut().zip(kinds).zip(times) {
-            let recorded =
-                |number| self.host.record(|cmd| self.record(cmd, renderer, list, settings, number));
-            let recording: Result<Vec<Duration>> = (0..RECORDED).map(recorded).collect();
-            let recording = recording?.iter().map(|time| 1e6 * time.as_secs_f64()).collect();
-            println!(
-                "{name:<30} {kind:<24} {:>14.1} {:>10.1} {:>10.1}",
-                median(recording),
-                median(cpu),
-                median(clock)
-            );
-        }
-        Ok(())
-    }
-
-    /// Records a frame; returns the times of `prepare` and `draw`.
-    fn record(
-        &self,
-        cmd: vk::CommandBuffer,
-        renderer: &mut Renderer,
-        list: &[Instance],
-        settings: &Settings,
-        number: usize,
-    ) -> Result<Duration> {
-        let view = View::whole(camera(1e-3 * number as f64, SIZE)?, SIZE);
-        // SAFETY: prepared outside the frame's pass and drawn inside it; what is submitted is waited for.
-        unsafe {
-            let start = ThreadTime::now();
-            renderer.prepare(cmd, list, &view, settings)?;
-            let prepare = start.elapsed();
-            self.frame.begin(self.host, cmd);
-            let start = ThreadTime::now();
-            renderer.draw(cmd)?;
-            let draw = start.elapsed();
-            self.frame.end(self.host, cmd);
-            Ok(prepare + draw)
-        }
-    }
-}
-
-fn median(mut times: Vec<f64>) -> f64 {
-    times.sort_by(f64::total_cmp);
-    times[times.len() / 2]
 }

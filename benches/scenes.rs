@@ -1,49 +1,39 @@
 //! Ground truth: samplers in points per second, and the tracer in rays per second.
 
-use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
-use std::time::Duration;
+mod support;
+
+use support::{Result, Row, Table, whole};
 use surfel::Settings;
 use surfel::settings::Shading;
-use surfel::verify::scenes;
-use surfel::verify::truth;
 use surfel::verify::truth::{Filter, Options};
+use surfel::verify::{scenes, truth};
 
-criterion_group!(benches, samplers, tracer);
-criterion_main!(benches);
+/// Side of the exact pictures, px, and rays per pixel.
+const SIDE: u32 = 128;
+const RAYS: u32 = 16;
 
-/// Surfels by each sampler, in Morton order.
-fn samplers(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("sampler");
-    group.sample_size(10).sampling_mode(SamplingMode::Flat);
-    group.warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(3));
-    for sampler in ["jittered", "blue-noise", "grid", "scanner"] {
-        let name = format!("scene:torus?points=100000&sampler={sampler}");
-        let sample = || scenes::open(&name).expect("the scene is a built-in one");
-        group.throughput(Throughput::Elements(sample().len() as u64));
-        group.bench_function(sampler, |bencher| bencher.iter_with_large_drop(sample));
-    }
-    group.finish();
+fn main() -> Result<()> {
+    let table = Table::new("samples in Morton order, and exact pictures by 16 rays per pixel", None);
+    ["jittered", "blue-noise", "grid", "scanner"].into_iter().try_for_each(|name| sample(&table, name))?;
+    // Of shapes with a closed form, of patches, of many shapes.
+    ["sphere", "torus", "bumpy-sphere", "tree"].into_iter().try_for_each(|name| trace(&table, name))
 }
 
-/// Exact pictures with 16 rays per pixel: of a shape with a closed form, of patches, of many shapes.
-fn tracer(criterion: &mut Criterion) {
-    const SIDE: u32 = 128;
-    const RAYS: u32 = 16;
-    let mut group = criterion.benchmark_group("tracer");
-    group.sample_size(10).sampling_mode(SamplingMode::Flat);
-    group.warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(3));
-    group.throughput(Throughput::Elements(u64::from(SIDE * SIDE * RAYS)));
+fn sample(table: &Table, sampler: &str) -> Result<()> {
+    let name = format!("scene:torus?points=100000&sampler={sampler}");
+    let points = scenes::open(&name)?.len();
+    let row = Row::new(format!("sampler `{sampler}`"), whole(|| Ok(scenes::open(&name)?)));
+    table.compare(vec![row.of(points, " points/s")])
+}
+
+fn trace(table: &Table, scene: &str) -> Result<()> {
     let settings = Settings { shading: Shading::Colour, ..Default::default() };
     let options = Options { filter: Filter::Box, most_samples: RAYS, ..Default::default() };
-    for scene in ["sphere", "torus", "bumpy-sphere", "tree"] {
-        let name = format!("scene:{scene}");
-        let surface = scenes::surface(&name).expect("the scene is a built-in one");
-        let few = scenes::open(&format!("{name}?points=1000")).expect("it can be sampled");
-        let bounds = few.bounds().expect("it has points");
-        let camera =
-            scenes::camera(&name).and_then(|view| view.camera(1.0, &bounds)).expect("it has a camera");
-        let trace = || truth::render(&*surface, &camera, &settings, [SIDE; 2], &options, &());
-        group.bench_function(scene, |bencher| bencher.iter(|| trace().expect("it is traced")));
-    }
-    group.finish();
+    let name = format!("scene:{scene}");
+    let surface = scenes::surface(&name)?;
+    let bounds = scenes::open(&format!("{name}?points=1000"))?.bounds().ok_or("the scene is empty")?;
+    let camera = scenes::camera(&name)?.camera(1.0, &bounds)?;
+    let picture = || Ok(truth::render(&*surface, &camera, &settings, [SIDE; 2], &options, &())?);
+    let row = Row::new(format!("tracer, {scene}"), whole(picture));
+    table.compare(vec![row.of((SIDE * SIDE * RAYS) as usize, " rays/s")])
 }

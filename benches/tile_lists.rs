@@ -5,16 +5,18 @@
 //!
 //! usage: `cargo bench --bench tile_lists [-- FILE…]`: files beside the built-in scenes.
 
+mod support;
+
+use support::Result;
+use surfel::bench::format;
 use surfel::estimate::Estimate;
 use surfel::formats::{ReadOptions, read};
 use surfel::frame::Splat;
 use surfel::geometry::{Camera, Surfels};
 use surfel::settings::Settings;
 use surfel::verify::scenes::bumpy_sphere;
-use surfel::vk::{Device, DeviceOptions};
+use surfel::vk::Device;
 use surfel::{Rasterizer, RenderOptions, Renderer, Scene};
-
-type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
 /// Width and height of the picture, px.
 const SIZE: usize = 1024;
@@ -32,36 +34,28 @@ const BOX: usize = 16;
 const SPLAT: usize = 64 + 32;
 
 fn main() -> Result<()> {
-    let device = match Device::open(&DeviceOptions::default()) {
-        Ok(device) => device,
-        Err(error) => {
-            eprintln!("SKIPPED: {error}");
-            return Ok(());
-        }
-    };
+    let Some(device) = support::device() else { return Ok(()) };
     let mut scenes = Vec::new();
     for points in [10_000, 100_000, 1_000_000] {
         let mut surfels = bumpy_sphere::sample(points, 1);
         surfels.sort_morton();
-        scenes.push((format!("bumpy sphere, {points}"), surfels));
+        scenes.push((format!("bumpy sphere, {}", format::count(points.into())), surfels));
     }
     for file in std::env::args().skip(1).filter(|argument| !argument.starts_with("--")) {
         let cloud = read(std::path::Path::new(&file), &ReadOptions::default(), &())?.cloud;
         let (surfels, _) = cloud.into_surfels(&Estimate::default(), &())?;
         scenes.push((file, surfels));
     }
-    println!(
-        "{SIZE} x {SIZE} px, tiles of {TILE} x {TILE} px that have splats; a group is {FAN_OUT} boxes, {} B; a splat {SPLAT} B",
-        FAN_OUT * BOX
-    );
+    let about = format!("{SIZE}×{SIZE} px; means of the tiles of {TILE}×{TILE} px that have splats");
+    support::machine(&about, Some(&device));
+    support::head(&HEAD);
     for (name, surfels) in &scenes {
         let settings = Settings::default();
-        let (splats, cutoff) = (splats(&device, surfels, &settings)?, settings.cutoff);
+        let splats = splats(&device, surfels, &settings)?;
         let ellipses: Vec<_> = splats.iter().map(|splat| Ellipse::new(splat, &settings)).collect();
         let hierarchy = Hierarchy::new(&ellipses);
-        println!("\n{name}: {} splats, cut-off {cutoff} sigma", ellipses.iter().flatten().count());
         for lanes in LANES {
-            report(lanes, &replay(&hierarchy, &ellipses, lanes));
+            support::line(&row(name, lanes, &replay(&hierarchy, &ellipses, lanes)));
         }
     }
     Ok(())
@@ -285,35 +279,45 @@ fn replay(hierarchy: &Hierarchy, ellipses: &[Option<Ellipse>], lanes: usize) -> 
     all
 }
 
-fn report(lanes: usize, all: &[Counts]) {
+/// Columns of [`row`]: 99 % and most are of the splats of a tile; the hottest are 1 % of the tiles.
+const HEAD: [&str; 11] = [
+    "scene",
+    "lanes",
+    "tiles",
+    "groups of 8 boxes",
+    "splats",
+    "99 % of tiles below; most",
+    "lanes without a splat",
+    "tested pixels that are covered",
+    "loads of a frame",
+    "work of the hottest tiles",
+    "tiles that walk again for attribute",
+];
+
+fn row(name: &str, lanes: usize, all: &[Counts]) -> [String; HEAD.len()] {
     let sum = |of: fn(&Counts) -> usize| all.iter().map(of).sum::<usize>() as f64;
-    let tiles = all.len() as f64;
-    let spread = |of: fn(&Counts) -> usize| {
-        let mut sorted: Vec<_> = all.iter().map(of).collect();
-        sorted.sort_unstable();
-        let at = |share: f64| sorted[((sorted.len() - 1) as f64 * share) as usize];
-        format!("{:.1} a tile (99 %: {}, most {})", sum(of) / tiles, at(0.99), at(1.0))
-    };
     let [groups, splats, batches, covered] =
         [sum(|c| c.groups), sum(|c| c.splats), sum(|c| c.batches), sum(|c| c.covered)];
+    let mut sorted: Vec<_> = all.iter().map(|counts| counts.splats).collect();
+    sorted.sort_unstable();
+    let at = |share: f64| sorted[((sorted.len() - 1) as f64 * share) as usize];
     let mut hot: Vec<_> = all.iter().map(|counts| counts.groups + counts.splats).collect();
     hot.sort_unstable_by(|a, b| b.cmp(a));
-    let hottest =
-        hot.iter().take(all.len().div_ceil(100)).sum::<usize>() as f64 / hot.iter().sum::<usize>() as f64;
+    let hottest = hot.iter().take(all.len().div_ceil(100)).sum::<usize>() as f64 / (groups + splats);
     let again = all.iter().filter(|counts| counts.splats > MOST_VISITED).count();
     let bytes = groups * (FAN_OUT * BOX) as f64 + splats * SPLAT as f64;
-    println!("  {lanes} lanes, {} tiles", all.len());
-    println!("    groups  {}", spread(|counts| counts.groups));
-    println!("    splats  {}", spread(|counts| counts.splats));
-    println!(
-        "    idle lanes: {:.0} % while boxes are loaded, {:.0} % while splats are; {:.0} % of the pixels tested are covered",
-        100.0 * (1.0 - FAN_OUT as f64 / lanes as f64),
-        100.0 * (1.0 - splats / (batches * lanes as f64)),
-        100.0 * covered / (splats * (TILE * TILE) as f64),
-    );
-    println!(
-        "    loads {:.1} MB a frame; {:.1} % of the work in the hottest 1 % of tiles; {again} tiles walk again for attribute",
-        bytes / 1e6,
-        100.0 * hottest,
-    );
+    let mean = |sum: f64| format::significant(sum / all.len() as f64, 3);
+    [
+        name.into(),
+        lanes.to_string(),
+        all.len().to_string(),
+        mean(groups),
+        mean(splats),
+        format!("{}; {}", at(0.99), at(1.0)),
+        format::percent(1.0 - splats / (batches * lanes as f64)),
+        format::percent(covered / (splats * (TILE * TILE) as f64)),
+        format::with_prefix(bytes) + "B",
+        format::percent(hottest),
+        again.to_string(),
+    ]
 }

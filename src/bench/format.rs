@@ -5,6 +5,7 @@ use super::group::distinct;
 use super::record::{
     Ceilings, Clock, Implementation, Memory, Provenance, Rate, Run, RunSettings, Session, Sweep,
 };
+use crate::frame::times::Statistics;
 use crate::settings::methods::Method;
 
 /// Rounds to `digits` significant digits, without trailing zeros; uses a power of ten if the number would be long.
@@ -68,8 +69,14 @@ pub fn ms(value: f64) -> String {
     significant(value, 3)
 }
 
+/// A median with its 95 % interval, if it is known.
+pub fn spread(of: &Statistics) -> String {
+    let interval = of.interval.map(|[low, high]| format!(" ({}–{})", ms(low), ms(high)));
+    ms(of.median) + &interval.unwrap_or_default()
+}
+
 /// A number with a prefix of ten to the power of three: `8.1 G`.
-fn with_prefix(value: f64) -> String {
+pub fn with_prefix(value: f64) -> String {
     let prefixes = [(1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k")];
     match prefixes.into_iter().find(|(size, _)| value >= *size) {
         Some((size, prefix)) => format!("{} {prefix}", significant(value / size, 3)),

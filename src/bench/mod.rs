@@ -11,7 +11,7 @@
 //! | [`place`] | viewpoints relative to a subject's own |
 //! | [`subject`] | scenes of any number of points, with their exact surface |
 //! | [`engine`] | ways to render, behind one interface |
-//! | [`stopwatch`] | times of frames |
+//! | [`stopwatch`], [`frame_times`] | times of any work in turns, and of frames |
 //! | [`disturbance`] | why times may not be those of the work |
 //! | [`error_terms`], [`hidden`] | parts of the error |
 //! | [`ceilings`], [`work`] | rates of the device, and what passes do of them at least |
@@ -21,6 +21,7 @@
 //! | [`command`] | the command of a picture |
 //! | [`record`] | results, as stored in JSON |
 //! | [`table`], [`csv`], [`report`] | results as text, CSV and HTML |
+//! | [`format`](mod@format) | numbers and names as text |
 //! | [`recommendations`], [`standings`], [`convergence`], [`machines`] | evaluation of the results |
 
 pub mod ceilings;
@@ -31,7 +32,8 @@ pub mod csv;
 pub mod disturbance;
 pub mod engine;
 pub mod error_terms;
-mod format;
+pub mod format;
+pub mod frame_times;
 mod group;
 pub mod hard;
 pub mod hidden;

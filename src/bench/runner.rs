@@ -6,8 +6,9 @@ use super::engine::{CpuEngine, DeviceEngine, Engine, LoadedEngine, TracedEngine}
 use super::papers::details;
 use super::plan::{Measurements, Plan};
 use super::record::{self, Against, Float64Error, Images, Run, RunSettings, Time};
+use super::stopwatch::Effort;
 use super::subject::{Subject, pixel_angle};
-use super::{error_terms, hidden, images, stopwatch, work};
+use super::{error_terms, frame_times, hidden, images, work};
 use crate::Scene;
 use crate::capture::{self, capture};
 use crate::error::{Error, Result};
@@ -47,7 +48,7 @@ pub struct Options {
     /// Precision of exact pictures.
     pub truth: truth::Options,
     /// Number of timed frames.
-    pub effort: stopwatch::Effort,
+    pub effort: Effort,
     /// Time after which no further plan is measured.
     pub until: Option<Instant>,
 }
@@ -84,7 +85,7 @@ struct Opened<'a> {
 }
 
 impl Opened<'_> {
-    fn side(&mut self) -> stopwatch::Side<'_> {
+    fn side(&mut self) -> frame_times::Side<'_> {
         (&mut *self.engine, &self.job.camera, &self.job.plan.settings)
     }
 }
@@ -226,7 +227,7 @@ impl Runner {
     fn fill_alone(&mut self, mut opened: Opened<'_>) -> Result<Run> {
         let time = opened.job.plan.measurements.time;
         let mut sides: Vec<_> = time.then(|| opened.side()).into_iter().collect();
-        let time = stopwatch::take_turns(&mut sides, &self.options.effort).pop().transpose()?;
+        let time = frame_times::time_frames(&mut sides, &self.options.effort).pop().transpose()?;
         self.fill(opened, time)
     }
 
@@ -289,7 +290,7 @@ impl Runner {
         let mut others = self.load(&other, &other.model)?;
         let first = (&mut *others, &other.camera, &base.settings);
         let second = (engine, &job.camera, &job.plan.settings);
-        stopwatch::ratio(first, second, &self.options.effort)
+        frame_times::ratio(first, second, &self.options.effort)
     }
 
     /// The engine of a job with `model` instead of its own.
@@ -408,9 +409,9 @@ impl Runner {
 }
 
 /// Times of all that are opened and ask for them.
-fn time_all(opened: &mut [Result<Opened<'_>>], effort: &stopwatch::Effort) -> Vec<Result<Time>> {
+fn time_all(opened: &mut [Result<Opened<'_>>], effort: &Effort) -> Vec<Result<Time>> {
     let timed = opened.iter_mut().flatten().filter(|opened| opened.job.plan.measurements.time);
-    stopwatch::take_turns(&mut timed.map(Opened::side).collect::<Vec<_>>(), effort)
+    frame_times::time_frames(&mut timed.map(Opened::side).collect::<Vec<_>>(), effort)
 }
 
 /// What another attempt gives, unless the device is lost.

@@ -1,27 +1,23 @@
-//! Times of frames.
+//! Times of repeated work: whatever takes turns is warmed up, sampled and summed up here.
 
-use super::engine::LoadedEngine;
 use super::load::Load;
-use super::record::{Clock, Pass, Time};
-use crate::error::Result;
 use crate::frame::times::{Statistics, Times};
-use crate::geometry::Camera;
-use crate::settings::Settings;
-use cpu_time::ProcessTime;
+use crate::vk::PassTime;
+use cpu_time::{ProcessTime, ThreadTime};
 use std::time::{Duration, Instant};
 
-/// How many frames are timed: between `least` and `most`, while the time lasts.
+/// How many turns are timed: between `least` and `most`, while the time lasts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
-    /// Warm-up frames: the first one creates pipelines and targets.
+    /// Warm-up turns: the first one creates pipelines and targets.
     pub warmup: usize,
-    /// Least number of timed frames.
+    /// Least number of timed turns.
     pub least: usize,
-    /// Greatest number of timed frames.
+    /// Greatest number of timed turns.
     pub most: usize,
-    /// Time for all frames together.
+    /// Time for all turns together.
     pub budget: Duration,
-    /// Time after which one frame suffices.
+    /// Time after which one turn suffices.
     pub until: Option<Instant>,
 }
 
@@ -34,98 +30,142 @@ impl Default for Effort {
     }
 }
 
-/// A loaded engine, its camera and its settings.
-pub type Side<'a> = (&'a mut (dyn LoadedEngine + 'static), &'a Camera, &'a Settings);
-
-/// Renders warm-up frames for at least [`WARM`]; returns their number.
-fn warm_up((engine, camera, settings): &mut Side<'_>, effort: &Effort) -> Result<usize> {
-    let (start, mut frames) = (Instant::now(), 0);
-    while frames < effort.warmup || (frames < effort.most && start.elapsed() < WARM) {
-        engine.frame(camera, settings, false)?;
-        frames += 1;
-    }
-    Ok(frames)
+/// Times of one turn, ms.
+#[derive(Clone, Debug, Default)]
+pub struct Sample {
+    /// Wall time.
+    pub wall: f64,
+    /// Processor time; NaN if it is unknown.
+    pub cpu: f64,
+    /// Passes by the device's timestamps; empty without.
+    pub passes: Vec<PassTime>,
 }
 
-/// Times of one of several engines so far.
+/// Work that takes turns: does it once and returns the times, of which it may leave out what comes before and after.
+pub type Work<'a, E> = Box<dyn FnMut() -> Result<Sample, E> + 'a>;
+
+/// Does work, and times it with the processor time of all threads.
+///
+/// # Errors
+/// Those of the work.
+pub fn timed<T, E>(work: impl FnOnce() -> Result<T, E>) -> Result<(T, Sample), E> {
+    timed_by(|| ProcessTime::now().as_duration(), work)
+}
+
+/// The same with the processor time of this thread alone.
+///
+/// # Errors
+/// Those of the work.
+pub fn timed_on_thread<T, E>(work: impl FnOnce() -> Result<T, E>) -> Result<(T, Sample), E> {
+    timed_by(|| ThreadTime::now().as_duration(), work)
+}
+
+fn timed_by<T, E>(
+    processor: impl Fn() -> Duration,
+    work: impl FnOnce() -> Result<T, E>,
+) -> Result<(T, Sample), E> {
+    let (begin, spent) = (Instant::now(), processor());
+    let made = work()?;
+    let [wall, cpu] = [begin.elapsed(), processor() - spent].map(|time| time.as_secs_f64() * 1e3);
+    Ok((made, Sample { wall, cpu, passes: Vec::new() }))
+}
+
+/// Samples of all turns of some work.
 #[derive(Default)]
-struct Turns {
-    warmup: usize,
-    /// Wall and processor time of whole frames, and sums of the passes, ms.
-    whole: Vec<f64>,
+pub struct Samples {
+    /// Warm-up turns, of which there are no samples.
+    pub warmup: usize,
+    /// Logical processors that other programs kept busy meanwhile, on average; none if it is unknown.
+    pub others: Option<f64>,
+    wall: Vec<f64>,
     cpu: Vec<f64>,
-    sums: Vec<f64>,
+    device: Vec<f64>,
     passes: Times,
     spent: Duration,
 }
 
-impl Turns {
-    fn wants_more(&self, effort: &Effort) -> bool {
-        let count = self.whole.len();
-        if effort.until.is_some_and(|until| Instant::now() >= until) {
-            return count == 0;
+impl Samples {
+    /// Takes warm-up turns for at least [`WARM`].
+    fn warm_up<E>(work: &mut Work<'_, E>, effort: &Effort) -> Result<Self, E> {
+        let (start, mut samples, mut last) = (Instant::now(), Self::default(), Sample::default());
+        while samples.warmup < effort.warmup || (samples.warmup < effort.most && start.elapsed() < WARM) {
+            last = work()?;
+            samples.warmup += 1;
         }
-        count < effort.least || (count < effort.most && self.spent < effort.budget)
+        // It is the frame that `Times` discards.
+        samples.passes.add(Duration::ZERO, &last.passes);
+        Ok(samples)
     }
 
-    /// A frame with timestamps, then a whole one without them, which they would disturb. The first frame also brings what other engines have
-    /// displaced from the caches back; a GPU, whose timestamps are the result, renders one more for that.
-    fn take(&mut self, (engine, camera, settings): &mut Side<'_>) -> Result<()> {
+    fn wants_more(&self, effort: &Effort) -> bool {
+        if effort.until.is_some_and(|until| Instant::now() >= until) {
+            return self.count() == 0;
+        }
+        self.count() < effort.least || (self.count() < effort.most && self.spent < effort.budget)
+    }
+
+    fn take<E>(&mut self, work: &mut Work<'_, E>) -> Result<(), E> {
         let start = Instant::now();
-        if engine.clock() == Clock::Gpu {
-            engine.frame(camera, settings, false)?;
+        let Sample { wall, cpu, passes } = work()?;
+        self.wall.push(wall);
+        self.cpu.push(cpu);
+        if !passes.is_empty() {
+            self.device.push(passes.iter().map(|pass| pass.milliseconds).sum());
         }
-        let times = engine.frame(camera, settings, true)?;
-        let (begin, spent) = (Instant::now(), ProcessTime::now());
-        engine.frame(camera, settings, false)?;
-        self.whole.push(begin.elapsed().as_secs_f64() * 1e3);
-        self.cpu.push(spent.elapsed().as_secs_f64() * 1e3);
-        if !times.is_empty() {
-            self.sums.push(times.iter().map(|pass| pass.milliseconds).sum());
-        }
-        self.passes.add(Duration::ZERO, &times);
+        self.passes.add(Duration::ZERO, &passes);
         self.spent += start.elapsed();
         Ok(())
     }
 
-    fn time(&self, clock: Clock, others: Option<f64>) -> Time {
-        let pass = |(name, ms): (&'static str, Statistics)| Pass { name: name.into(), ms };
-        Time {
-            clock,
-            frames: self.whole.len(),
-            warmup: self.warmup,
-            wall: Statistics::of(&self.whole).unwrap_or_default(),
-            cpu: Statistics::of(&self.cpu).unwrap_or_default(),
-            passes: self.passes.passes().map(pass).collect(),
-            device: Statistics::of(&self.sums),
-            others,
-            baseline_ratio: None,
-        }
+    /// Number of samples.
+    pub fn count(&self) -> usize {
+        self.wall.len()
+    }
+
+    /// Wall time.
+    pub fn wall(&self) -> Statistics {
+        Statistics::of(&self.wall).unwrap_or_default()
+    }
+
+    /// Processor time.
+    pub fn cpu(&self) -> Statistics {
+        Statistics::of(&self.cpu).unwrap_or_default()
+    }
+
+    /// Sum of the passes of a turn; none without timestamps.
+    pub fn device(&self) -> Option<Statistics> {
+        Statistics::of(&self.device)
+    }
+
+    /// Passes, in their order; empty without timestamps.
+    pub fn passes(&self) -> impl Iterator<Item = (&'static str, Statistics)> {
+        self.passes.passes()
+    }
+
+    /// Time relative to that of `base`, which took turns with this work: each quotient is of the same turn. Of processor time, or of wall time
+    /// where a GPU does the work.
+    pub fn ratio(&self, base: &Self, by_wall: bool) -> Option<Statistics> {
+        let of = |samples: &Self| if by_wall { &samples.wall } else { &samples.cpu }.clone();
+        let quotients: Vec<f64> = of(self).iter().zip(of(base)).map(|(own, base)| own / base).collect();
+        Statistics::of(&quotients)
     }
 }
 
-/// Times frames of several engines that take turns, so that other load on the machine affects all alike.
+/// Times several pieces of work that take turns, so that other load on the machine affects all alike.
 ///
 /// # Errors
-/// Those of its frames for each engine; the others go on.
-pub fn take_turns(sides: &mut [Side<'_>], effort: &Effort) -> Vec<Result<Time>> {
-    let start = |side: &mut Side<'_>| {
-        let warmup = warm_up(side, effort)?;
-        let mut turns = Turns { warmup: warmup + 1, ..Turns::default() };
-        // The first frame with timestamps does not count.
-        turns.passes.add(Duration::ZERO, &side.0.frame(side.1, side.2, true)?);
-        Ok(turns)
-    };
-    let mut all: Vec<Result<Turns>> = sides.iter_mut().map(start).collect();
+/// Those of its turns for each of them; the others go on.
+pub fn take_turns<E>(all: &mut [Work<'_, E>], effort: &Effort) -> Vec<Result<Samples, E>> {
+    let mut found: Vec<_> = all.iter_mut().map(|work| Samples::warm_up(work, effort)).collect();
     let load = Load::start();
     loop {
         let mut any = false;
-        for (side, turns) in sides.iter_mut().zip(&mut all) {
-            let Ok(own) = turns else { continue };
+        for (work, samples) in all.iter_mut().zip(&mut found) {
+            let Ok(own) = samples else { continue };
             if own.wants_more(effort) {
                 any = true;
-                if let Err(error) = own.take(side) {
-                    *turns = Err(error);
+                if let Err(error) = own.take(work) {
+                    *samples = Err(error);
                 }
             }
         }
@@ -134,35 +174,58 @@ pub fn take_turns(sides: &mut [Side<'_>], effort: &Effort) -> Vec<Result<Time>> 
         }
     }
     let others = load.others();
-    let times = all.into_iter().zip(sides);
-    times.map(|(turns, side)| turns.map(|turns| turns.time(side.0.clock(), others))).collect()
+    found.iter_mut().flatten().for_each(|samples| samples.others = others);
+    found
 }
 
-/// Least number of pairs of frames for a ratio.
-const FEWEST_PAIRS: usize = 9;
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Time of a frame of the second side relative to one of the first: of processor time, or of wall time where a GPU does the work. Frames
-/// alternate, so other load on the machine affects both alike; each quotient is of two consecutive frames.
-///
-/// # Errors
-/// Those of the frames.
-pub fn ratio(mut first: Side<'_>, mut second: Side<'_>, effort: &Effort) -> Result<Option<Statistics>> {
-    warm_up(&mut first, effort)?;
-    warm_up(&mut second, effort)?;
-    let (mut quotients, start) = (Vec::new(), Instant::now());
-    while quotients.len() < effort.least.max(FEWEST_PAIRS)
-        || (quotients.len() < effort.most && start.elapsed() < effort.budget)
-    {
-        let by_wall = [&first, &second].iter().any(|side| side.0.clock() != Clock::Cpu);
-        let before = one(&mut first, by_wall)?;
-        quotients.push(one(&mut second, by_wall)? / before);
+    /// One turn for warm-up, however fast it is, and three that count.
+    const THREE: Effort = Effort { warmup: 1, least: 3, most: 1, budget: Duration::ZERO, until: None };
+
+    /// Work whose turns take `scale` · 1, 2, 3 … ms.
+    fn rising(scale: f64) -> Work<'static, ()> {
+        let mut turn = 0.0;
+        Box::new(move || {
+            turn += 1.0;
+            let passes = vec![PassTime { label: "surface", milliseconds: turn }];
+            Ok(Sample { wall: scale * turn, cpu: turn * turn, passes })
+        })
     }
-    Ok(Statistics::of(&quotients))
-}
 
-/// Wall or processor time of a frame, s.
-fn one((engine, camera, settings): &mut Side<'_>, by_wall: bool) -> Result<f64> {
-    let (begin, spent) = (Instant::now(), ProcessTime::now());
-    engine.frame(camera, settings, false)?;
-    Ok(if by_wall { begin.elapsed() } else { spent.elapsed() }.as_secs_f64())
+    #[test]
+    fn warm_up_turns_have_no_samples_and_quotients_are_of_the_same_turn() {
+        let found = take_turns(&mut [rising(1.0), rising(4.0)], &THREE);
+        let [base, own] = [0, 1].map(|i| found[i].as_ref().unwrap());
+        assert_eq!((own.warmup, own.count(), own.wall().min, own.wall().max), (1, 3, 8.0, 16.0));
+        assert_eq!(own.ratio(base, true).map(|ratio| (ratio.min, ratio.max)), Some((4.0, 4.0)));
+        assert_eq!(own.ratio(base, false).map(|ratio| ratio.median), Some(1.0));
+        assert_eq!(own.passes().map(|(name, ms)| (name, ms.min)).collect::<Vec<_>>(), [("surface", 2.0)]);
+        assert_eq!(own.device().map(|sum| sum.median), Some(3.0));
+    }
+
+    #[test]
+    fn work_that_fails_does_not_end_the_others() {
+        let mut left = 4;
+        let failing: Work<'_, &str> = Box::new(|| {
+            left -= 1;
+            if left > 0 { Ok(Sample::default()) } else { Err("lost") }
+        });
+        let found = take_turns(&mut [failing, Box::new(|| Ok(Sample::default()))], &THREE);
+        assert_eq!(found[0].as_ref().err(), Some(&"lost"));
+        assert_eq!(found[1].as_ref().map(Samples::count), Ok(3));
+    }
+
+    #[test]
+    fn work_has_the_time_of_its_threads() {
+        let work = || {
+            let sum: f64 = (0..200_000).map(|i| std::hint::black_box(f64::from(i)).sqrt()).sum();
+            Ok::<_, ()>(sum)
+        };
+        let beside = || std::thread::scope(|scope| scope.spawn(work).join().expect("it does not panic"));
+        let [all, own] = [timed(beside), timed_on_thread(beside)].map(|timed| timed.unwrap().1.cpu);
+        assert!(all > own, "{all} ms of all threads, {own} ms of this one");
+    }
 }

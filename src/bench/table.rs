@@ -146,12 +146,6 @@ fn widths(rows: &[Vec<String>], columns: &[usize]) -> Vec<usize> {
 
 fn cells(session: &Session, run: &Run, runs: &[&Run]) -> Vec<String> {
     let metric = |name, digits| run.metric(name).map(|v| format::significant(v, digits)).unwrap_or_default();
-    let time = |run: &Run| {
-        let work = run.time.as_ref()?.work();
-        let interval =
-            work.interval.map(|[low, high]| format!(" ({}–{})", format::ms(low), format::ms(high)));
-        Some(format::ms(work.median) + &interval.unwrap_or_default())
-    };
     let multiple = run.time.as_ref().and_then(|time| time.baseline_ratio).map(format::baseline_ratio);
     let memory = format::total(run.memory);
     let start = [
@@ -166,7 +160,7 @@ fn cells(session: &Session, run: &Run, runs: &[&Run]) -> Vec<String> {
             .unwrap_or_default(),
     ];
     let rest = [
-        time(run).unwrap_or_default(),
+        run.time.as_ref().map(|time| format::spread(&time.work())).unwrap_or_default(),
         run.time.as_ref().map(|time| format::ms(time.wall.median)).unwrap_or_default(),
         multiple.unwrap_or_default(),
         metric("rmse", 3),

@@ -6,9 +6,10 @@ use std::process::{Child, Command};
 use std::time::Duration;
 use surfel::bench::disturbance::{Disturbance, disturbances};
 use surfel::bench::engine::LoadedEngine;
+use surfel::bench::frame_times::{Side, time_frames};
 use surfel::bench::recommendations::{Recommendations, within_error};
 use surfel::bench::record::{Clock, Experiment, Memory, Run, Session, Time};
-use surfel::bench::stopwatch::{Effort, Side, take_turns};
+use surfel::bench::stopwatch::Effort;
 use surfel::geometry::Camera;
 use surfel::picture::Picture;
 use surfel::settings::Settings;
@@ -55,7 +56,7 @@ fn times<const N: usize>(mut all: [Work; N]) -> [Time; N] {
         Camera::look_at(DVec3::Z, DVec3::ZERO, DVec3::Y, 0.8, 1.0, 0.1).expect("it looks at something");
     let settings = Settings::default();
     let mut sides: Vec<Side<'_>> = all.iter_mut().map(|work| (work as _, &camera, &settings)).collect();
-    let times = take_turns(&mut sides, &effort).into_iter().map(|time| time.expect("work never fails"));
+    let times = time_frames(&mut sides, &effort).into_iter().map(|time| time.expect("work never fails"));
     times.collect::<Vec<_>>().try_into().expect("one time per engine")
 }
 
