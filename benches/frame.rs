@@ -39,13 +39,19 @@ fn defaults() -> Vec<String> {
 }
 
 /// Options, as of `surfel render`, with the frames that they mean.
-fn variants() -> [(&'static str, Rasterizer, Settings); 5] {
+fn variants() -> [(&'static str, Rasterizer, Settings); 7] {
     let default = || Settings { shading: Shading::Colour, background: Some([1.0; 3]), ..Settings::default() };
     [
         ("", Rasterizer::Compute, default()),
         (", `--lowpass 0`", Rasterizer::Compute, Settings { lowpass: 0.0, ..default() }),
         (", `--cull back`", Rasterizer::Compute, Settings { cull: Cull::Back, ..default() }),
+        (", `--cull auto`", Rasterizer::Compute, Settings { cull: Cull::Auto, ..default() }),
         (", `--alpha coverage`", Rasterizer::Compute, Settings { alpha: Alpha::Coverage, ..default() }),
+        (
+            ", `--pixel-filter gaussian`",
+            Rasterizer::Compute,
+            Settings { pixel_filter: Settings::DEFAULT_PIXEL_FILTER, ..default() },
+        ),
         (", `--rasterizer draw`", Rasterizer::Draw, default()),
     ]
 }

@@ -22,6 +22,7 @@ layout(push_constant) uniform Level {
     uint finer_count; // boxes of the finer level
     uint number;      // of this level, from 0 for splats
     uint clusters;    // first box of the level of clusters
+    uint fronts;      // 1: without splats that face away
 } level;
 
 // Whether the node is that of a culled cluster or below one. Padding has no cluster.
@@ -39,8 +40,10 @@ void main() {
     for (uint k = 0; k < FAN_OUT; k++) {
         uint child = FAN_OUT * i + k;
         Box box = child < level.finer_count ? load_box(level.finer_start + child) : EMPTY_BOX;
-        bounds.xy = min(bounds.xy, uvec2(box.x & 0xffffu, box.x >> 16));
-        bounds.zw = max(bounds.zw, uvec2(box.y & 0xffffu, box.y >> 16));
+        if (level.fronts != 0 && is_back(box)) box = EMPTY_BOX;
+        uvec4 own = corners(box);
+        bounds.xy = min(bounds.xy, own.xy);
+        bounds.zw = max(bounds.zw, own.zw);
         nearest = max(nearest, box.z);
     }
     boxes[level.start + i] = Box(bounds.x | bounds.y << 16, bounds.z | bounds.w << 16, nearest, NO_CLIP);

@@ -33,6 +33,7 @@
 layout(local_size_x = 64) in;
 
 layout(constant_id = 1) const bool CULL_BACK = false;
+layout(constant_id = 68) const bool CULL_AUTO = false; // pass sides culls some splats that face away
 layout(constant_id = 49) const bool UNORDERED = false; // splats are in another order than surfels: lib/order.glsl
 layout(constant_id = 21) const bool MOVED = false; // splats of discs moved away from the eye by ε along the camera's axis
 
@@ -200,6 +201,7 @@ uint footprint(uint i, out Splat splat) {
     splat.variance = image.conic.variance.x;
     splat.axis_residual = image.conic.axis_residual;
     splat.anchor = pack_anchor(pixel);
+    if (CULL_AUTO && disc.facing.x >= 0.0 && !is_two_sided(i)) splat.anchor |= BACK_SPLAT;
     float epsilon = MOVED ? 0.0 : frame.epsilon * disc.radius;
     splat.epsilon = PERSPECTIVE ? disc.w.x / (disc.w.x + epsilon) : view.key_slope * epsilon;
     if (disc.facing.x > 0.0) splat.epsilon = -splat.epsilon;
@@ -230,7 +232,9 @@ Box box_of_splat(uint i, Splat splat) {
     float nearest = nearest_of(splat, variance, stretch);
     if (any(greaterThan(low, high)) || nearest <= frame.key_far) return EMPTY_BOX;
     uint clip = screen_clip_index(i);
-    return box_of(low, high, nearest, has_clip(clip) ? chunk.first_clip + clip : NO_CLIP);
+    Box box = box_of(low, high, nearest, has_clip(clip) ? chunk.first_clip + clip : NO_CLIP);
+    if (is_back(splat)) box.y |= BACK_BOX;
+    return box;
 }
 
 void store_attributes(uint slot, uint i, Splat splat) {

@@ -35,17 +35,17 @@ void main() {
         uvec2 pixel = origin + lane_pixel(r);
         uint index = is_in_viewport(pixel) ? pixel_index(ivec2(pixel)) : 0;
         if (is_resumed()) depths[r] = uintBitsToFloat(visibility[index]);
-        if (is_resumed() && COVERAGE) coverage_masks[r] = coverage[index];
+        if (is_resumed() && COVERAGE && !FRONTS) coverage_masks[r] = coverage[index];
     }
     compute_visibility(origin);
-    if (COVERAGE) compute_coverage(origin);
+    if (COVERAGE && !FRONTS) compute_coverage(origin);
     report_incomplete();
     for (uint r = 0; r < ROWS; r++) {
         uvec2 pixel = origin + lane_pixel(r);
         if (!is_in_viewport(pixel)) continue;
         uint index = pixel_index(ivec2(pixel));
         visibility[index] = floatBitsToUint(depths[r]);
-        if (COVERAGE) coverage[index] = coverage_masks[r];
+        if (COVERAGE && !FRONTS) coverage[index] = coverage_masks[r];
     }
 }
 
@@ -57,9 +57,12 @@ void main() {
 #endif
 #ifdef VERTEX
 
+layout(constant_id = 69) const bool FRONTS = false; // only splats that face the eye: the pass before sides
+
 void main() {
     uint i = surfel_index();
     Splat splat = splat_of(i);
+    if (FRONTS && is_back(splat)) splat.anchor = 0;
     write_splat_vertex(i, splat, visibility_variance(variance_of(splat)), gl_VertexIndex % 3);
 }
 

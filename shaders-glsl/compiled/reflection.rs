@@ -25,7 +25,7 @@ pub static ATTRIBUTE_VERTEX: Module = Module {
     name: "attribute_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("attribute_vertex.spv"),
-    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58],
+    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58, 67],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::WEIGHTS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -45,7 +45,7 @@ pub static ATTRIBUTE_COMPUTE: Module = Module {
     name: "attribute_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("attribute_compute.spv"),
-    constants: &[0, 3, 4, 14, 15, 16, 17, 19, 23, 24, 44, 45, 46, 47],
+    constants: &[0, 3, 4, 14, 15, 16, 17, 19, 23, 24, 44, 45, 46, 47, 67, 69],
     resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, false), (&resource::SUMS0, true), (&resource::SUMS1, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -55,7 +55,7 @@ pub static ATTRIBUTE_CLIP_LINES_VERTEX: Module = Module {
     name: "attribute_clip_lines_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("attribute_clip_lines_vertex.spv"),
-    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 23, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58],
+    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 23, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58, 67],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false), (&resource::WEIGHTS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -75,7 +75,7 @@ pub static ATTRIBUTE_SUBGROUPS_COMPUTE: Module = Module {
     name: "attribute_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("attribute_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 14, 15, 16, 17, 19, 23, 24, 44, 45, 46, 47],
+    constants: &[0, 3, 4, 14, 15, 16, 17, 19, 23, 24, 44, 45, 46, 47, 67, 69],
     resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, false), (&resource::SUMS0, true), (&resource::SUMS1, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -295,7 +295,7 @@ pub static FOOTPRINT_COMPUTE: Module = Module {
     name: "footprint_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("footprint_compute.spv"),
-    constants: &[0, 1, 2, 12, 13, 14, 15, 16, 21, 23, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+    constants: &[0, 1, 2, 12, 13, 14, 15, 16, 21, 23, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 67, 68],
     resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -305,7 +305,7 @@ pub static FOOTPRINT_TILES_COMPUTE: Module = Module {
     name: "footprint_tiles_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("footprint_tiles_compute.spv"),
-    constants: &[0, 1, 2, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 21, 23, 26, 27, 37, 45, 46, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63],
+    constants: &[0, 1, 2, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 21, 23, 26, 27, 37, 45, 46, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 67, 68],
     resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::SPLAT_ATTRIBUTES, true), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::WEIGHTS, false), (&resource::SPLAT_BOXES, true), (&resource::ORDER, false), (&resource::VISIBLE_CLUSTERS, false), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -315,7 +315,7 @@ pub static NEAREST_VERTEX: Module = Module {
     name: "nearest_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("nearest_vertex.spv"),
-    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 37, 50, 51, 52, 53, 54, 57, 58],
+    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 37, 50, 51, 52, 53, 54, 57, 58, 67],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -335,7 +335,7 @@ pub static NEAREST_COMPUTE: Module = Module {
     name: "nearest_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 69],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -345,7 +345,7 @@ pub static NEAREST_COVERAGE_VERTEX: Module = Module {
     name: "nearest_coverage_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("nearest_coverage_vertex.spv"),
-    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 23, 37, 50, 51, 52, 53, 54, 57, 58],
+    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 23, 37, 50, 51, 52, 53, 54, 57, 58, 67],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -365,7 +365,7 @@ pub static NEAREST_CLIP_LINES_VERTEX: Module = Module {
     name: "nearest_clip_lines_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("nearest_clip_lines_vertex.spv"),
-    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 23, 37, 50, 51, 52, 53, 54, 57, 58],
+    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 23, 37, 50, 51, 52, 53, 54, 57, 58, 67],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -385,7 +385,7 @@ pub static NEAREST_SUBGROUPS_COMPUTE: Module = Module {
     name: "nearest_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 69],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -395,7 +395,7 @@ pub static NEAREST_SLICES_COMPUTE: Module = Module {
     name: "nearest_slices_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_slices_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 69],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::SUMS0, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -405,7 +405,7 @@ pub static NEAREST_SUBGROUPS_SLICES_COMPUTE: Module = Module {
     name: "nearest_subgroups_slices_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_subgroups_slices_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 69],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::SUMS0, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -690,12 +690,32 @@ pub static SHADE_LOOKUPS_STORE_IDS_COMPUTE: Module = Module {
     push: size_of::<layout::Step>() as u32,
 };
 
+/// The compute stage of `shaders-glsl/sides.glsl`.
+pub static SIDES_COMPUTE: Module = Module {
+    name: "sides_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("sides_compute.spv"),
+    constants: &[0, 2, 15, 37],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, true), (&resource::VIEWS, false), (&resource::VISIBILITY_IMAGE, false), (&resource::COUNTS, true)],
+    push: size_of::<layout::Chunk>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/sides.glsl`.
+pub static SIDES_TILES_COMPUTE: Module = Module {
+    name: "sides_tiles_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("sides_tiles_compute.spv"),
+    constants: &[0, 2, 15, 37, 63],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, true), (&resource::SPLAT_BOXES, true), (&resource::VISIBLE_CLUSTERS, false), (&resource::VISIBILITY, false), (&resource::COUNTS, true)],
+    push: size_of::<layout::Chunk>() as u32,
+};
+
 /// The compute stage of `shaders-glsl/surface.glsl`.
 pub static SURFACE_COMPUTE: Module = Module {
     name: "surface_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 66],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 66, 67, 69],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -705,7 +725,7 @@ pub static SURFACE_SUBGROUPS_COMPUTE: Module = Module {
     name: "surface_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 66],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 66, 67, 69],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -715,7 +735,7 @@ pub static VISIBILITY_VERTEX: Module = Module {
     name: "visibility_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("visibility_vertex.spv"),
-    constants: &[0, 15, 16, 37],
+    constants: &[0, 15, 16, 37, 67, 69],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -735,7 +755,7 @@ pub static VISIBILITY_COMPUTE: Module = Module {
     name: "visibility_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("visibility_compute.spv"),
-    constants: &[0, 15, 16, 23, 24, 31, 44, 47],
+    constants: &[0, 15, 16, 23, 24, 31, 44, 47, 67, 69],
     resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_CLIPS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -745,7 +765,7 @@ pub static VISIBILITY_COVERAGE_VERTEX: Module = Module {
     name: "visibility_coverage_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("visibility_coverage_vertex.spv"),
-    constants: &[0, 15, 16, 23, 37],
+    constants: &[0, 15, 16, 23, 37, 67, 69],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -765,7 +785,7 @@ pub static VISIBILITY_CLIP_LINES_VERTEX: Module = Module {
     name: "visibility_clip_lines_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("visibility_clip_lines_vertex.spv"),
-    constants: &[0, 15, 16, 23, 37],
+    constants: &[0, 15, 16, 23, 37, 67, 69],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -785,7 +805,7 @@ pub static VISIBILITY_SUBGROUPS_COMPUTE: Module = Module {
     name: "visibility_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("visibility_subgroups_compute.spv"),
-    constants: &[0, 15, 16, 23, 24, 31, 44, 47],
+    constants: &[0, 15, 16, 23, 24, 31, 44, 47, 67, 69],
     resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -818,6 +838,10 @@ pub mod constant {
     pub const COUNT: u32 = 2;
     /// `COVERAGE`, first in `shaders-glsl/filter.glsl`.
     pub const COVERAGE: u32 = 31;
+    /// `COVERAGE_FOOTPRINT`, first in `shaders-glsl/attribute.glsl`.
+    pub const COVERAGE_FOOTPRINT: u32 = 67;
+    /// `CULL_AUTO`, first in `shaders-glsl/footprint.glsl`.
+    pub const CULL_AUTO: u32 = 68;
     /// `CULL_BACK`, first in `shaders-glsl/cull.glsl`.
     pub const CULL_BACK: u32 = 1;
     /// `ELLIPSES`, first in `shaders-glsl/attribute.glsl`.
@@ -836,6 +860,8 @@ pub mod constant {
     pub const FRAME_CORNERS: u32 = 46;
     /// `FRAME_WEIGHTS`, first in `shaders-glsl/attribute.glsl`.
     pub const FRAME_WEIGHTS: u32 = 45;
+    /// `FRONTS`, first in `shaders-glsl/attribute.glsl`.
+    pub const FRONTS: u32 = 69;
     /// `HOST_DEPTH`, first in `shaders-glsl/composite.glsl`.
     pub const HOST_DEPTH: u32 = 40;
     /// `HOST_SAMPLES`, first in `shaders-glsl/seed.glsl`.
@@ -1614,7 +1640,7 @@ pub mod resource {
         set: 1,
         binding: 9,
         kind: DescriptorType::SAMPLED_IMAGE,
-        stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::FRAGMENT.as_raw()),
     };
 
     /// `visibility_input`, first in `shaders-glsl/normalize.glsl`.
@@ -1839,7 +1865,7 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(IncompleteFrame, incomplete_frame) == 0);
     const _: () = assert!(std::mem::size_of::<IncompleteFrame>() == 4);
 
-    /// `Level`, 24 bytes, first in `shaders-glsl/boxes.glsl`.
+    /// `Level`, 28 bytes, first in `shaders-glsl/boxes.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Level {
@@ -1855,6 +1881,8 @@ pub mod layout {
         pub number: u32,
         /// Byte 20.
         pub clusters: u32,
+        /// Byte 24.
+        pub fronts: u32,
     }
     const _: () = assert!(std::mem::offset_of!(Level, finer_start) == 0);
     const _: () = assert!(std::mem::offset_of!(Level, start) == 4);
@@ -1862,7 +1890,8 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Level, finer_count) == 12);
     const _: () = assert!(std::mem::offset_of!(Level, number) == 16);
     const _: () = assert!(std::mem::offset_of!(Level, clusters) == 20);
-    const _: () = assert!(std::mem::size_of::<Level>() == 24);
+    const _: () = assert!(std::mem::offset_of!(Level, fronts) == 24);
+    const _: () = assert!(std::mem::size_of::<Level>() == 28);
 
     /// `Materials`, 4 bytes, first in `shaders-glsl/shade.glsl`.
     #[repr(C)]

@@ -5,8 +5,6 @@
 
 const uint ALL_SAMPLES = (1u << SAMPLES) - 1;
 
-// Solid part of a footprint: discs are 1.3 times as large as needed, to leave no holes.
-const float SOLID = 0.77;
 // Least variance of the solid ellipse, px²: an edge-on disc has none.
 const float LEAST_SOLID = 1e-12;
 // Overlap of discs on both sides of an edge, px: more than the rounding error between them.

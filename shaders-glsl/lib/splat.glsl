@@ -6,13 +6,19 @@
 
 layout(constant_id = 14) const bool WIDEN_SMALL = false; // the low-pass filter widens only axes shorter than itself
 layout(constant_id = 16) const bool CONFETTI = false; // the kernel is ψ_E
+layout(constant_id = 67) const bool COVERAGE_FOOTPRINT = false; // α is coverage: visibility's footprint is that of the solid part
+
+// Solid part of a footprint: discs are 1.3 times as large as needed, to leave no holes.
+const float SOLID = 0.77;
+// Half the side of a pixel, px.
+const float HALF_PIXEL = 0.5;
 
 struct Splat {
     vec2 offset;         // centre of the variance's ellipse relative to the anchor, px
     vec2 axis;           // unit major axis of the variance V
     float variance;      // V's larger eigenvalue, px²
     float axis_residual; // angle from `axis`, which is rounded, to V's axis, rad; CONFETTI, otherwise 0
-    uint anchor;         // packed anchor pixel and DRAWN_SPLAT: see pack_anchor
+    uint anchor;         // packed anchor pixel, DRAWN_SPLAT and BACK_SPLAT: see pack_anchor
     float epsilon;       // perspective: 1 / (1 + ε/z), a factor of κ; orthographic: ε as a difference of κ; negative if the normal faces away
     vec3 plane_hi;       // κ of the tangent plane (has_linear_depth: distance) at the anchor, and its derivatives along x and y, per px, as
                          // sums of two floats
@@ -24,6 +30,9 @@ struct Splat {
 #ifdef WRITES_SPLATS
 layout(set = 0, binding = 1, std430) writeonly buffer Splats { uvec4 splat_rows[]; };
 layout(set = 0, binding = 1, std430) writeonly buffer SplatLayout { Splat splats[]; };
+#elif defined(MODIFIES_SPLATS)
+layout(set = 0, binding = 1, std430) buffer Splats { uvec4 splat_rows[]; };
+#define splat_row(k) splat_rows[k]
 #elif defined(TILE_PASS) && defined(SUBGROUPS)
 layout(set = 1, binding = 17) uniform utextureBuffer splat_texels;
 #define splat_row(k) texelFetch(splat_texels, int(k))
@@ -52,11 +61,14 @@ void store_splat(uint index, Splat splat) {
     splat_rows[k + 3] = floatBitsToUint(vec4(splat.plane_lo, splat.key_disc));
 }
 
+#endif
+#if defined(WRITES_SPLATS) || defined(MODIFIES_SPLATS)
 // Marks the splat of a culled surfel.
 void store_culled(uint index) {
     splat_rows[4 * index + 1] = uvec4(0);
 }
-#elif !defined(FRAGMENT)
+#endif
+#if !defined(WRITES_SPLATS) && !defined(FRAGMENT)
 // Loads splat i of the instance, or of the frame's list.
 Splat splat_of(uint i) {
 #ifdef TILE_PASS
@@ -72,11 +84,13 @@ Splat splat_of(uint i) {
 }
 #endif
 
-const uint DRAWN_SPLAT = 1;
+const uint DRAWN_SPLAT = 1u << 30;
+// The surfel faces away, and pass sides decides whether it is drawn.
+const uint BACK_SPLAT = 1u << 31;
 
 // The anchor is the pixel nearest to the centre: offsets from it keep their digits on large viewports.
 uint pack_anchor(uvec2 pixel) {
-    return pixel.x | pixel.y << 15 | DRAWN_SPLAT << 30;
+    return pixel.x | pixel.y << 15 | DRAWN_SPLAT;
 }
 
 // Pixel centre of the anchor, px.
@@ -85,7 +99,11 @@ vec2 anchor_of(Splat splat) {
 }
 
 bool is_drawn(Splat splat) {
-    return splat.anchor >> 30 == DRAWN_SPLAT;
+    return (splat.anchor & DRAWN_SPLAT) != 0;
+}
+
+bool is_back(Splat splat) {
+    return (splat.anchor & BACK_SPLAT) != 0;
 }
 
 // V's eigenvalues, px²: their product is its determinant.
@@ -110,16 +128,20 @@ float stretch_of(Splat splat, vec2 variance, float key_centre) {
     return rim() * min(MOST_STRETCH, 1.0001 / max(1.0 - rise, 0.5));
 }
 
-// Variances of the two footprints along V's axes, px², from V's eigenvalues. Visibility's is just wide enough to contain a pixel centre.
-// Attribute's is V + H; with WIDEN_SMALL the larger of H and visibility's. It is at least visibility's, so that every visible pixel has
-// attributes.
+// Variances of the two footprints along V's axes, px², from V's eigenvalues. Visibility's is just wide enough to contain a pixel centre; if α
+// is coverage, its semi-axes are those of the solid part (lib/coverage.glsl) and half a pixel, so that it contains the centres of pixels of
+// which that covers samples. Attribute's is V + H; with WIDEN_SMALL the larger of H and V as widened by a mask's visibility. It is at least
+// visibility's, so that every visible pixel has attributes.
 vec2 visibility_variance(vec2 variance) {
-    return variance + frame.visibility_lowpass;
+    if (!COVERAGE_FOOTPRINT) return variance + frame.visibility_lowpass;
+    vec2 deviation = SOLID * sqrt(variance) + HALF_PIXEL / frame.cutoff;
+    return max(deviation * deviation, frame.visibility_lowpass);
 }
 
 vec2 attribute_variance(vec2 variance) {
-    if (WIDEN_SMALL) return max(visibility_variance(variance), frame.attribute_lowpass);
-    return variance + frame.attribute_lowpass;
+    vec2 widened = variance + frame.attribute_lowpass;
+    if (WIDEN_SMALL) widened = max(variance + frame.visibility_lowpass, frame.attribute_lowpass);
+    return COVERAGE_FOOTPRINT ? max(widened, visibility_variance(variance)) : widened;
 }
 
 // √(|V| / |V'|) of the filtered variance V': the filter's factor of the kernel's amplitude. The product of both eigenvalues would overflow

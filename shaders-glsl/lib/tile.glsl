@@ -19,6 +19,7 @@ layout(push_constant) uniform Hierarchy {
 } hierarchy;
 
 layout(constant_id = 47) const bool SLICED = false;
+layout(constant_id = 69) const bool FRONTS = false; // only splats that face the eye: the pass before sides
 
 // Whether this dispatch resumes the state of the previous slice, and whether no further slice follows.
 bool is_resumed() {

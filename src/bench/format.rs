@@ -20,6 +20,16 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
 }
 
+/// An error: three digits, also if the last ones are 0, so that errors in one table are equally precise.
+pub fn error(value: f64) -> String {
+    let text = significant(value, 3);
+    let digits = text.chars().filter(char::is_ascii_digit).skip_while(|digit| *digit == '0').count();
+    match text.contains('.') {
+        true if digits < 3 && !text.contains('·') => text + &"0".repeat(3 - digits),
+        _ => text,
+    }
+}
+
 fn sign(value: f64) -> String {
     if value < 0.0 { "−".into() } else { String::new() }
 }
@@ -291,6 +301,17 @@ mod tests {
         let prefixed = [0.5, 12_345.0, 8.1e9, 4.8e12].map(with_prefix);
         assert_eq!(prefixed, ["0.5 ", "12.3 k", "8.1 G", "4.8 T"]);
         assert_eq!(significant(f64::NEG_INFINITY, 3), "−∞");
+        let errors = [
+            (0.010_02, "0.0100"),
+            (0.25, "0.250"),
+            (1.5, "1.50"),
+            (0.0123, "0.0123"),
+            (9.8e-5, "9.8·10⁻⁵"),
+            (0.0, "0"),
+        ];
+        for (value, text) in errors {
+            assert_eq!(error(value), text);
+        }
         assert_eq!([500, 10_000, 1_500_000, 999_999].map(count), ["500", "10 k", "1.5 M", "1 M"]);
     }
 }

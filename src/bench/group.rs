@@ -1,18 +1,16 @@
 //! Groups of results in their order of appearance.
 
-use super::record::Run;
-
-/// Groups runs by key, in the order of their first.
-pub fn grouped<'r, K: PartialEq>(
-    runs: impl IntoIterator<Item = &'r Run>,
-    key: impl Fn(&'r Run) -> K,
-) -> Vec<(K, Vec<&'r Run>)> {
-    let mut groups: Vec<(K, Vec<&Run>)> = Vec::new();
-    for run in runs {
-        let key = key(run);
+/// Groups items by key, in the order of their first.
+pub fn grouped<'r, T, K: PartialEq>(
+    items: impl IntoIterator<Item = &'r T>,
+    key: impl Fn(&'r T) -> K,
+) -> Vec<(K, Vec<&'r T>)> {
+    let mut groups: Vec<(K, Vec<&T>)> = Vec::new();
+    for item in items {
+        let key = key(item);
         match groups.iter_mut().find(|(other, _)| *other == key) {
-            Some((_, group)) => group.push(run),
-            None => groups.push((key, vec![run])),
+            Some((_, group)) => group.push(item),
+            None => groups.push((key, vec![item])),
         }
     }
     groups

@@ -9,7 +9,7 @@ use crate::verify::metrics::{Metric, Options, Pair, measure};
 use base64::prelude::{BASE64_STANDARD, Engine};
 
 /// Largest side of an image in the report, px; larger images are cropped to their middle.
-const MOST: u32 = 512;
+pub const MOST: u32 = 768;
 
 /// The images of a run: rendered, truth, and FLIP's difference map.
 pub fn of(plan: &Plan, picture: &Picture, truth: &Picture) -> Result<Images> {

@@ -181,11 +181,11 @@ impl Subject {
         }
     }
 
-    /// Whether its points have colours.
+    /// Whether its points have colours, or a texture.
     pub fn is_coloured(&self) -> bool {
         match &self.shape {
             Shape::Built(_) => true,
-            Shape::Scan(scan) => scan.cloud.colours.is_some(),
+            Shape::Scan(scan) => scan.cloud.colours.is_some() || scan.cloud.texture.is_some(),
         }
     }
 }

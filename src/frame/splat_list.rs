@@ -277,6 +277,7 @@ impl SplatList {
                 finer_count: finer as u32,
                 number,
                 clusters,
+                fronts: 0,
             };
             finer = nodes;
             step

@@ -207,10 +207,10 @@ fn raster_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
 
 fn compute_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
     let outputs = stored_outputs(variant.outputs).into_iter();
-    if !variant.split && !variant.sliced {
-        return outputs.collect();
-    }
     let visibility = pixels(Resource::Visibility, Format::R32_UINT, 4, &resource::VISIBILITY);
+    if !variant.split && !variant.sliced {
+        return std::iter::once(variant.cull_auto.then_some(visibility)).chain(outputs).collect();
+    }
     if variant.visibility == Visibility::Nearest {
         // State between the slices of the nearest pass: depths and ids of splats.
         let nearest_splats = pixels(Resource::Sums0, Format::R32_UINT, 4, &resource::SUMS0);

@@ -17,6 +17,8 @@ pub struct Variant {
     pub perspective: bool,
     /// Back faces are culled.
     pub cull_back: bool,
+    /// Pass sides culls some back faces.
+    pub cull_auto: bool,
     /// Projection of a disc.
     pub footprint: Footprint,
     /// The kernel is Confetti's.
@@ -183,6 +185,7 @@ impl Variant {
         Self {
             perspective,
             cull_back: settings.cull == Cull::Back,
+            cull_auto: settings.cull == Cull::Auto,
             footprint: splatting.footprint,
             confetti: splatting.kernel != Kernel::Gaussian,
             visibility: splatting.visibility,
@@ -291,7 +294,9 @@ impl Variant {
         Constants::default()
             .with(constant::PERSPECTIVE, self.perspective)
             .with(constant::CULL_BACK, self.cull_back)
+            .with(constant::CULL_AUTO, self.cull_auto)
             .with(constant::COVERAGE, self.coverage)
+            .with(constant::COVERAGE_FOOTPRINT, self.coverage)
             .with(constant::TEXTURE, self.texture.is_some())
             .with(constant::TEXELS, self.texture.map_or(0, |texels| texels as u32))
             .with(constant::MATERIALS, self.materials)

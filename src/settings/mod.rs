@@ -8,7 +8,7 @@ pub mod splatting;
 
 use crate::error::{Error, Result};
 use crate::settings::pull_push::PullPush;
-use crate::settings::splatting::{Filter, Splatting};
+use crate::settings::splatting::{Filter, Splatting, Visibility};
 pub use choice::Choice;
 pub use outputs::{Outputs, Precision, Rasterizer, RasterizerChoice, RasterizerReason};
 use std::ops::RangeInclusive;
@@ -79,7 +79,7 @@ impl Settings {
     pub const MOST_PIXEL_FILTER: f32 = 4.0;
 
     /// Least low-pass variance at which every splat covers a pixel centre, px²: `(0.71 / F)²`, so that the cut-off radius is at least √½
-    /// px. The visibility footprint uses it.
+    /// px. The visibility footprint has at least this.
     pub fn least_lowpass(&self) -> f32 {
         (0.71 / self.cutoff).powi(2)
     }
@@ -129,6 +129,15 @@ impl Settings {
         if self.pull_push.is_some() && self.splatting != Splatting::default() {
             return Err(Error::Usage(
                 "pull-push has no splats: leave out footprint, kernel, filter, visibility, normalization and shade".into(),
+            ));
+        }
+        if self.cull == Cull::Auto
+            && (self.pull_push.is_some() || self.splatting.visibility == Visibility::Axis)
+        {
+            return Err(Error::Usage(
+                "the sides of a surface are found by splats along viewing rays: by pull-push, or with the visibility axis, choose the culling \
+                 none or back"
+                    .into(),
             ));
         }
         self.pull_push.map_or(Ok(()), PullPush::check)?;
@@ -226,6 +235,11 @@ pub enum Cull {
     None,
     /// Surfels whose normals face away are culled.
     Back,
+    /// Of the surfels whose normals face away, those of the far side of a closed surface are culled.
+    ///
+    /// These are surfels behind whose centres, or at most a radius before them, a surface faces the eye: culling equals `back` on closed
+    /// surfaces, and leaves open ones whole from behind. Other normals are flipped towards the eye.
+    Auto,
 }
 
 /// Meaning of α.

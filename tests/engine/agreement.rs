@@ -8,7 +8,7 @@ use glam::{DVec3, Vec3};
 use surfel::geometry::{Camera, Clip, Ellipse, Surfels, Weights};
 use surfel::settings::methods::{Method, object_ewa, sprites};
 use surfel::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
-use surfel::settings::{Alpha, Widen};
+use surfel::settings::{Alpha, Cull, Widen};
 use surfel::verify::reference::{Comparison, Expected, Surfel, Tolerance};
 use surfel::vk::DeviceLimits;
 use surfel::{Outputs, Picture, Rasterizer, RenderOptions, Settings};
@@ -111,6 +111,24 @@ fn every_case_with_filtered_pixels() {
         failures(&with_axes(filtered), &sampled_views(i, 2), &format!("filtered, {alpha:?}"))
     };
     assert_agree([Alpha::Coverage, Alpha::Mask].into_iter().enumerate().flat_map(by).collect());
+}
+
+#[test]
+fn every_case_with_sides() {
+    let conic = Splatting::default();
+    let nearest = Splatting { visibility: Visibility::Nearest, normalization: Normalization::None, ..conic };
+    let all = [
+        (conic, Alpha::Coverage),
+        (conic, Alpha::Mask),
+        (sprites::METHOD.splatting, Alpha::Mask),
+        (nearest, Alpha::Coverage),
+    ];
+    let by = |(i, (splatting, alpha)): (usize, (Splatting, Alpha))| {
+        let cases =
+            with_axes(|case| Settings { splatting, alpha, cull: Cull::Auto, ..case.settings.clone() });
+        failures(&cases, &sampled_views(i, 4), &format!("sides, {alpha:?}, {splatting:?}"))
+    };
+    assert_agree(all.into_iter().enumerate().flat_map(by).collect());
 }
 
 /// The first filter and normalization that a footprint and a visibility can be combined with.

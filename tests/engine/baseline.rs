@@ -2,8 +2,9 @@
 
 use crate::support::sampling::{Random, bumpy_sphere, paint_linear, push};
 use crate::support::scenes::{self, Case};
+use crate::support::texture::textured;
 use glam::{DVec3, Vec3};
-use surfel::geometry::{Camera, Colours, Surfels};
+use surfel::geometry::{Camera, Cloud, Colours, Surfels};
 use surfel::settings::{Alpha, Cull, Shading, Widen};
 use surfel::verify::baseline::{Baseline, Kind};
 use surfel::verify::reference::{Comparison, Expected, Tolerance};
@@ -74,6 +75,21 @@ fn invalid_surfels_are_left_out() {
     assert!(comparison.passed() && comparison.object_pixels > 100, "{:?}", comparison.failures.first());
     let none = Surfels { radii: vec![f32::NAN; spoilt.len()], ..spoilt };
     assert!(matches!(Baseline::new(&none), Err(Error::Usage(_))));
+}
+
+#[test]
+fn a_texture_is_replaced_by_its_colours_at_the_points() {
+    let case = &cases()[0];
+    let draw = |surfels: &Surfels| {
+        let settings = Settings { shading: Shading::Colour, ..case.settings.clone() };
+        draw(Kind::Splats, surfels, &case.cameras[0], case.size, &settings)
+    };
+    let textured = textured(case.surfels.clone()).surfels;
+    let mut baked = Cloud::from(textured.clone());
+    baked.bake_texture();
+    let coloured = Surfels { texture: None, colours: baked.colours, ..textured.clone() };
+    let (plain, found) = (draw(&Surfels { texture: None, ..textured.clone() }), draw(&textured));
+    assert!(found == draw(&coloured) && found != plain);
 }
 
 /// Compares the picture of every camera with the reference.

@@ -1,6 +1,7 @@
 //! The bench measures runs, and reports why a run cannot be measured.
 
 use crate::support::gpu::{assert_silent, device};
+use crate::support::texture;
 use base64::prelude::{BASE64_STANDARD, Engine as _};
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
@@ -16,6 +17,7 @@ use surfel::bench::runner::{Options, Runner};
 use surfel::bench::stopwatch::Effort;
 use surfel::bench::subject::Subject;
 use surfel::bench::suites::UserInputs;
+use surfel::formats::image::{Output, write_png};
 use surfel::frame::times::Interval;
 use surfel::settings::methods::Method;
 use surfel::settings::{Settings, Shading};
@@ -345,6 +347,26 @@ fn inputs_are_rendered_by_every_method_lit_and_in_their_colours() {
     let some = plans(vec![Method::named("sprites").unwrap()]);
     let baselines = ["baseline-splats", "baseline-pixels", "baseline-traced"];
     assert_eq!(of(&some, &lit, Shading::Lit), [&["sprites"][..], &baselines].concat());
+}
+
+#[test]
+fn an_input_with_a_texture_is_rendered_in_its_colours() {
+    let folder = tempfile::tempdir().unwrap();
+    let image = Output::File(folder.path().join("squares.png"));
+    write_png(&texture::picture(), Shading::Colour, &image).unwrap();
+    let shadings = |comment: &str| {
+        let scan = folder.path().join("points.ply");
+        let properties = ["x", "y", "z", "u", "v"].map(|name| format!("property float {name}\n")).concat();
+        let header = format!("ply\nformat ascii 1.0\n{comment}element vertex 3\n{properties}end_header\n");
+        std::fs::write(&scan, header + "0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n").unwrap();
+        let subjects = vec![Rc::new(Subject::scan(&scan, None, &()).unwrap())];
+        let plans = Suite::Inputs.plans(&UserInputs { subjects, ..UserInputs::default() });
+        let mut shadings: Vec<_> = plans.iter().map(|plan| plan.settings.shading).collect();
+        shadings.dedup();
+        shadings
+    };
+    assert_eq!(shadings(""), [Shading::Lit]);
+    assert_eq!(shadings("comment TextureFile squares.png\n"), [Shading::Lit, Shading::Colour]);
 }
 
 #[test]

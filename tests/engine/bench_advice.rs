@@ -155,6 +155,7 @@ fn the_default_has_its_place_among_the_methods() {
     let results = Results { format: FORMAT, sessions: vec![session] };
     check(&results);
     let page = page(&results, CODE);
+    assert!(page.contains("It has the largest error of all methods: lit in 1 of 1."));
     assert!(page.contains("2 of 3") && page.contains("is faster and more exact than every method"));
     assert!(page.contains("is more exact than every method"));
 }
@@ -168,6 +169,7 @@ fn methods_are_not_ranked_by_errors_against_their_own_references() {
     let session = &mut results.sessions[0];
     for run in &mut session.runs {
         run.error.as_mut().unwrap().against = Against::OwnReference;
+        run.time.as_mut().unwrap().others = Some(1.5);
     }
     assert!(Recommendations::of(session).is_none() && standings(session).is_empty());
     check(&results);
@@ -176,6 +178,11 @@ fn methods_are_not_ranked_by_errors_against_their_own_references() {
         page.contains("Aliasing and thinning only, not truth") && page.contains("No method is recommended")
     );
     assert!(!page.contains("Pareto front") && !page.contains("Without options"));
+    assert!(
+        !page.contains("Lower left is better")
+            && !page.contains("<code>baseline-traced</code> below the plots")
+    );
+    assert!(page.contains("The times of 2 of 2 runs were disturbed"));
 }
 
 #[test]

@@ -5,9 +5,11 @@ mod agreement;
 mod baseline;
 mod bench;
 mod bench_advice;
+mod bench_machines;
 mod bench_report;
 mod bench_schema;
 mod bench_session;
+mod bench_text;
 mod capture;
 mod creases;
 mod discs;
@@ -33,6 +35,7 @@ mod reference;
 mod scans;
 #[cfg(feature = "compile-shaders")]
 mod shaders;
+mod sides;
 mod sphere;
 #[path = "../support/mod.rs"]
 mod support;

@@ -15,13 +15,16 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
     let exact = plots(page, session, true)?;
     let own = plots(page, session, false)?;
     let any = !exact.is_empty() || !own.is_empty();
+    let is_traced =
+        session.runs.iter().any(|run| run.implementation.method == TRACED && run.rmse().is_some());
     Ok(any.then(|| html! {
         p {
-            "Lower left is better. A line joins the runs of a method over the number of points, with the settings of least error for "
+            @if !exact.is_empty() { "Lower left is better. " }
+            "A line joins the runs of a method over the number of points, with the settings of least error for "
             "each number. Pale markers are its other settings. Rings mark what "
             code { "surfel render" } " draws without options, but for the shading. Dashed lines are the CPU baseline, which is no method. "
-            code { (TRACED) } " below the plots is what tracing 16 rays a pixel gives: of the exact surface of a built-in scene, or of the "
-            "triangles between the same points of a scan."
+            @if is_traced { code { (TRACED) } " below the plots is what tracing 16 rays a pixel gives: of the exact surface of a built-in scene, or of the "
+            "triangles between the same points of a scan." }
         }
         @if !exact.is_empty() {
             p {
@@ -44,7 +47,7 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
 /// The plots of runs against exact pictures, or against the methods' own references.
 fn plots(page: &mut Page<'_>, session: &Session, exact: bool) -> io::Result<Vec<Markup>> {
     let compared = |run: &&Run| run.experiment == Experiment::Budget && run.has_truth() == exact;
-    let error = if exact { "RMSE, linear light" } else { "RMSE against the own reference" };
+    let error = if exact { "RMSE, linear light" } else { "RMSE against the method's own reference" };
     let mut plots = Vec::new();
     for (view, runs) in grouped(session.runs.iter().filter(compared), Run::view) {
         let candidates = candidates(runs);
@@ -65,7 +68,7 @@ fn plots(page: &mut Page<'_>, session: &Session, exact: bool) -> io::Result<Vec<
 /// Ray tracing, in words: on the plot it would take the methods' room.
 fn far_below(traced: &[Candidate<'_>]) -> Markup {
     let one = |candidate: &Candidate<'_>| {
-        let (rmse, ms) = (format::significant(candidate.rmse, 2), format::ms(candidate.ms));
+        let (rmse, ms) = (format::error(candidate.rmse), format::ms(candidate.ms));
         format!("{}: RMSE {rmse} in {ms} ms of CPU time", format::count(candidate.run.points))
     };
     let all = traced.iter().map(one).collect::<Vec<_>>().join("; ");

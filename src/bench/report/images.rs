@@ -2,6 +2,7 @@
 
 use super::page::{self, Page, title};
 use crate::bench::format;
+use crate::bench::images::MOST;
 use crate::bench::record::{Experiment, Images, Run, Session};
 use maud::{Markup, html};
 use std::io;
@@ -61,5 +62,9 @@ fn caption(run: &Run) -> String {
         words.push("against its own reference".into());
     }
     words.extend(run.ms().map(|ms| format!("{} ms", format::ms(ms))));
+    if run.size.iter().any(|side| *side > MOST) {
+        words
+            .push(format!("the middle {} of the picture", format::size(run.size.map(|side| side.min(MOST)))));
+    }
     words.join(", ")
 }

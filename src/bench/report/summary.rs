@@ -3,6 +3,7 @@
 use super::page::{Page, title};
 use crate::bench::disturbance::disturbances;
 use crate::bench::format;
+use crate::bench::group::grouped;
 use crate::bench::recommendations::{Candidate, Column, Recommendations, within_error, within_time};
 use crate::bench::record::{RunSettings, Session};
 use crate::bench::standings::{Standing, standings};
@@ -45,6 +46,7 @@ fn unranked(session: &Session) -> Option<Markup> {
         p.lead {
             "No method is recommended: the surfaces of these points are unknown, so that errors of different methods cannot be compared. Give "
             "the mesh that the points were sampled from by " code { "--truth" } "."
+            (disturbed(session))
         }
     })
 }
@@ -57,13 +59,26 @@ fn default_table(standings: &[Standing<'_>], time: &str) -> Markup {
             code { (Method::SPLATTING[0].name) } " is what " code { "surfel render" } " draws without options. Each method as its preset, by "
             "RMSE, at the greatest number of points that most methods rendered."
         }
+        (worst(standings))
         div.scroll { table.standings {
             thead { tr {
-                th scope="col" { "scene" } th scope="col" { "points" } th scope="col" { "place" } th scope="col" { "RMSE" }
-                th scope="col" { (time) } th scope="col" { "least RMSE" }
+                th scope="col" { "scene" } th scope="col" { "place" } th.number scope="col" { "RMSE" } th.number scope="col" { (time) }
+                th scope="col" { "least RMSE" } th.number scope="col" { "points" }
             } }
             tbody { @for standing in standings { (standing_row(standing)) } }
         } }
+    } }
+}
+
+/// How often the default has the largest error, by shading.
+fn worst(standings: &[Standing<'_>]) -> Markup {
+    let of = |(shading, standings): (&str, Vec<&Standing<'_>>)| {
+        let worst = standings.iter().filter(|standing| standing.is_worst).count();
+        format!("{shading} in {worst} of {}", standings.len())
+    };
+    let counts: Vec<_> = grouped(standings, |standing| standing.view.shading).into_iter().map(of).collect();
+    html! { @if standings.iter().any(|standing| standing.is_worst) {
+        p { strong.bad { "It has the largest error of all methods: " (counts.join(", ")) "." } }
     } }
 }
 
@@ -72,21 +87,21 @@ fn standing_row(standing: &Standing<'_>) -> Markup {
     html! {
         tr.worst[*is_worst] {
             th scope="row" { (title(view)) }
-            td.number { (format::count(*points)) }
             td { strong { (place) " of " (methods) } @if *is_worst { ", the worst" } }
-            td.number { (format::significant(default.rmse, 3)) }
+            td.number { (format::error(default.rmse)) }
             td.number { (format::ms(default.ms)) }
             td {
-                (format::significant(best.rmse, 3)) " by " (best.run.implementation.label()) " in " (format::ms(best.ms)) " ms"
+                (format::error(best.rmse)) " by " (best.run.implementation.label()) " in " (format::ms(best.ms)) " ms"
                 @for (baseline, is_fast) in baselines {
                     div {
                         strong { (baseline.run.implementation.label())
                             @if *is_fast { " is faster and more exact than every method" } @else { " is more exact than every method" }
                         }
-                        ": RMSE " (format::significant(baseline.rmse, 3)) " in " (format::ms(baseline.ms)) " ms"
+                        ": RMSE " (format::error(baseline.rmse)) " in " (format::ms(baseline.ms)) " ms"
                     }
                 }
             }
+            td.number { (format::count(*points)) }
         }
     }
 }
@@ -130,7 +145,7 @@ fn cell(session: &Session, candidate: &Candidate<'_>, others: &[Candidate<'_>], 
     let multiple = run.time.as_ref().and_then(|time| time.baseline_ratio).map(format::baseline_ratio);
     let time =
         format!("{} ms", format::ms(*ms)) + &multiple.map(|text| format!(" ({text})")).unwrap_or_default();
-    let error = format!("RMSE {}", format::significant(*rmse, 2));
+    let error = format!("RMSE {}", format::error(*rmse));
     let [first, second] = if error_first { [error, time] } else { [time, error] };
     html! {
         strong { (first) } span { (second) }

@@ -35,9 +35,11 @@ fn session_views(session: &Session) -> Markup {
     let views = session.runs.iter().filter(|run| run.experiment == Experiment::Views);
     let size = views.clone().filter(|run| is_moved(run)).map(|run| run.size).next();
     html! {
-        "Right, behind and left are turned by 90°, 180° and −90° about the up axis, above is from 75° above the horizon; near is a third of the "
-        "distance, far eight times; inside is the centre of the bounds"
-        @if let Some(size) = size { ": all at " (format::size(size)) } ". Sizes in px are from the scene's own viewpoint."
+        @if let Some(size) = size {
+            "Right, behind and left are turned by 90°, 180° and −90° about the up axis, above is from 75° above the horizon; near is a third of "
+            "the distance, far eight times; inside is the centre of the bounds: all at " (format::size(size)) ". "
+        }
+        "Sizes in px are from the scene's own viewpoint."
     }
 }
 

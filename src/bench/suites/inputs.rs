@@ -13,6 +13,8 @@ use std::rc::Rc;
 
 /// Default numbers of points.
 const POINTS: [u64; 5] = [10_000, 30_000, 100_000, 300_000, 1_000_000];
+/// Of a scan, default numbers below this share of all points are measured beside all points: nearer ones would be nearly the same picture.
+const FEWER: f64 = 0.8;
 /// Number of points of the runs that have pictures, or the nearest to it.
 const PICTURED: u64 = 100_000;
 
@@ -44,7 +46,7 @@ impl UserInputs {
 pub(super) fn plans(suite: Suite, inputs: &UserInputs) -> Vec<Plan> {
     let methods = if inputs.methods.is_empty() { &Method::OWN[..] } else { &inputs.methods };
     let each = |subject: &Rc<Subject>| {
-        let densities = densities(subject, &inputs.points);
+        let densities = densities(subject.most_points(), &inputs.points);
         let pictured = densities.iter().copied().min_by_key(|points| points.abs_diff(PICTURED));
         let shadings = [Shading::Lit, Shading::Colour];
         let shadings: Vec<_> = shadings
@@ -61,12 +63,17 @@ pub(super) fn plans(suite: Suite, inputs: &UserInputs) -> Vec<Plan> {
     inputs.subjects.iter().flat_map(each).collect()
 }
 
-fn densities(subject: &Subject, given: &[u64]) -> Vec<u64> {
-    let most = subject.most_points();
-    let points = if given.is_empty() { &POINTS } else { given };
-    let mut densities: Vec<u64> =
-        points.iter().map(|&points| most.map_or(points, |most| points.min(most))).collect();
-    densities.extend(most.filter(|_| given.is_empty()));
+/// The numbers of points of an input that has at most `most`, ascending.
+fn densities(most: Option<u64>, given: &[u64]) -> Vec<u64> {
+    let mut densities: Vec<u64> = match most {
+        Some(most) if given.is_empty() => {
+            let fewer = POINTS.into_iter().filter(|&points| (points as f64) < FEWER * most as f64);
+            fewer.chain([most]).collect()
+        }
+        Some(most) => given.iter().map(|&points| points.min(most)).collect(),
+        None if given.is_empty() => POINTS.to_vec(),
+        None => given.to_vec(),
+    };
     densities.sort_unstable();
     densities.dedup();
     densities
@@ -93,4 +100,19 @@ fn budget(mut plan: Plan, subject: &Subject, methods: &[Method], images: bool) -
         pixels.for_each(|plan| plan.measurements = Measurements::TIME);
     }
     plans
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn densities_of_a_scan_end_with_all_points() {
+        assert_eq!(densities(None, &[]), POINTS);
+        assert_eq!(densities(Some(100_250), &[]), [10_000, 30_000, 100_250]);
+        assert_eq!(densities(Some(130_000), &[]), [10_000, 30_000, 100_000, 130_000]);
+        assert_eq!(densities(Some(500), &[]), [500]);
+        assert_eq!(densities(Some(100_250), &[200_000, 100_000, 100_000]), [100_000, 100_250]);
+        assert_eq!(densities(None, &[200_000, 100_000]), [100_000, 200_000]);
+    }
 }

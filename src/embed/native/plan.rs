@@ -8,8 +8,8 @@ use crate::frame::rasterizer::{Fit, rasterizer_for, width_of_sums};
 use crate::frame::targets::sums_format;
 use crate::frame::variant::Variant;
 use crate::scene::Streams;
-use crate::settings::Settings;
 use crate::settings::splatting::Visibility;
+use crate::settings::{Cull, Settings};
 use crate::settings::{Outputs, Precision, Rasterizer};
 use crate::vk::{Device, input_layout};
 use ash::vk;
@@ -357,9 +357,11 @@ pub(super) fn check_method(settings: &Settings) -> Result<()> {
     }
 }
 
-/// Settings of subpasses: the picture is blended over the host's, and its pixels do not see their neighbours, as a filter of pixels needs.
+/// Settings of subpasses: the picture is blended over the host's; its pixels do not see their neighbours, as a filter of pixels needs; and
+/// there is no visibility before them that tells sides apart.
 pub(super) fn in_subpasses(settings: &Settings) -> Settings {
-    Settings { background: None, pixel_filter: 0.0, ..settings.clone() }
+    let cull = if settings.cull == Cull::Auto { Cull::None } else { settings.cull };
+    Settings { background: None, pixel_filter: 0.0, cull, ..settings.clone() }
 }
 
 fn variant(

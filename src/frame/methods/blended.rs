@@ -19,10 +19,12 @@ use crate::frame::pass::Pass;
 use crate::frame::passes::footprint::{FOOTPRINT, MOVED};
 use crate::frame::passes::{attribute, boxes::BOXES, normalize, seed::SEED, surface::SURFACE, visibility};
 
-/// The passes; `moved` if ε is measured along the camera's axis, `split` if the passes of `surface` run separately.
-pub fn passes(path: Path, moved: bool, split: bool) -> Vec<&'static Pass> {
+/// The passes; `moved` if ε is measured along the camera's axis, `split` if the passes of `surface` run separately, `sides` if some splats that
+/// face away are culled.
+pub fn passes(path: Path, moved: bool, split: bool, sides: bool) -> Vec<&'static Pass> {
     let (first, second): (&[&Pass], &[&Pass]) =
         if moved { (&[&MOVED], &[&FOOTPRINT]) } else { (&[&FOOTPRINT], &[]) };
+    let first = &*[first, &super::sides(path, sides)].concat();
     match path {
         Path::Compute => {
             let boxes: &[&Pass] = if moved { &[&BOXES] } else { &[] };

@@ -6,8 +6,9 @@ mod pull_push;
 
 use super::pass::Pass;
 use super::passes::cull::CULL;
-use super::passes::filter;
 use super::passes::order::ORDER;
+use super::passes::sides::SIDES;
+use super::passes::{boxes, filter, visibility};
 use super::variant::Variant;
 use crate::settings::Rasterizer;
 use crate::settings::splatting::Visibility;
@@ -28,8 +29,10 @@ pub enum Path {
 pub fn passes(variant: &Variant, path: Path, scenes: usize) -> Vec<&'static Pass> {
     let mut list = match (variant.pull_push, variant.visibility) {
         (Some(settings), _) => pull_push::passes(variant, settings.storage, scenes),
-        (None, Visibility::Nearest) => nearest::passes(path),
-        (None, visibility) => blended::passes(path, visibility == Visibility::Axis, variant.split),
+        (None, Visibility::Nearest) => nearest::passes(path, variant.cull_auto),
+        (None, visibility) => {
+            blended::passes(path, visibility == Visibility::Axis, variant.split, variant.cull_auto)
+        }
     };
     if variant.filter_radius > 0 && !matches!(path, Path::Subpasses { .. }) {
         list.extend([&filter::ROWS, &filter::COLUMNS]);
@@ -41,6 +44,16 @@ pub fn passes(variant: &Variant, path: Path, scenes: usize) -> Vec<&'static Pass
         list.insert(0, &ORDER);
     }
     list
+}
+
+/// The passes after footprint that cull some splats that face away, if `there`: visibility of the others, and sides.
+fn sides(path: Path, there: bool) -> Vec<&'static Pass> {
+    match path {
+        Path::Compute if there => vec![&boxes::FRONTS, &visibility::COMPUTE_FRONTS, &SIDES],
+        Path::Raster if there => vec![&visibility::RASTER_FRONTS, &SIDES],
+        // A host's subpasses have no visibility before them.
+        Path::Compute | Path::Raster | Path::Subpasses { .. } => Vec::new(),
+    }
 }
 
 impl Path {

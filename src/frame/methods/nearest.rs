@@ -14,11 +14,12 @@ use super::Path;
 use crate::frame::pass::Pass;
 use crate::frame::passes::{boxes::BOXES, footprint::FOOTPRINT, nearest, normalize, seed::SEED};
 
-/// The passes.
-pub fn passes(path: Path) -> Vec<&'static Pass> {
+/// The passes; `sides` if some splats that face away are culled.
+pub fn passes(path: Path, sides: bool) -> Vec<&'static Pass> {
+    let sides = super::sides(path, sides);
     match path {
-        Path::Compute => vec![&FOOTPRINT, &BOXES, &nearest::COMPUTE],
-        Path::Raster => vec![&FOOTPRINT, &nearest::RASTER, &normalize::RASTER],
+        Path::Compute => [&[&FOOTPRINT], &*sides, &[&BOXES, &nearest::COMPUTE]].concat(),
+        Path::Raster => [&[&FOOTPRINT], &*sides, &[&nearest::RASTER, &normalize::RASTER]].concat(),
         Path::Subpasses { seed: false } => vec![&FOOTPRINT, &nearest::RASTER, &normalize::IN_SUBPASS],
         Path::Subpasses { seed: true } => {
             vec![&FOOTPRINT, &SEED, &nearest::RASTER, &normalize::IN_SUBPASS]

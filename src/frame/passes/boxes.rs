@@ -3,8 +3,20 @@
 use crate::frame::pass::{Commands, Domain, Pass, Program, Programs, StepContext};
 use crate::frame::recording::grid_over;
 use crate::frame::resource::Resource;
+use crate::frame::variant::Variant;
+use crate::vk::shaders::layout::Level;
 use crate::vk::shaders::{BOXES_COMPUTE, BOXES_SUBGROUPS_COMPUTE};
 use crate::vk::{Access, Recorder};
+
+/// The boxes of splats that face the eye, before sides.
+pub static FRONTS: Pass = Pass {
+    name: "boxes",
+    reads: &[],
+    writes: &[Resource::Boxes],
+    clears: &[],
+    programs: Programs::OfFrame(programs),
+    commands: Commands::Steps(|steps, rec| record(steps, rec, 1)),
+};
 
 /// One dispatch per level, one invocation per node.
 pub static BOXES: Pass = Pass {
@@ -12,19 +24,21 @@ pub static BOXES: Pass = Pass {
     reads: &[],
     writes: &[Resource::Boxes],
     clears: &[],
-    programs: Programs::OfFrame(|variant| {
-        let module = if variant.workgroup.subgroups { &BOXES_SUBGROUPS_COMPUTE } else { &BOXES_COMPUTE };
-        vec![Program::compute(module, Domain::Level)]
-    }),
-    commands: Commands::Steps(record),
+    programs: Programs::OfFrame(programs),
+    commands: Commands::Steps(|steps, rec| record(steps, rec, 0)),
 };
 
-fn record(steps: &StepContext<'_>, rec: &mut Recorder<'_>) {
+fn programs(variant: &Variant) -> Vec<Program> {
+    let module = if variant.workgroup.subgroups { &BOXES_SUBGROUPS_COMPUTE } else { &BOXES_COMPUTE };
+    vec![Program::compute(module, Domain::Level)]
+}
+
+fn record(steps: &StepContext<'_>, rec: &mut Recorder<'_>, fronts: u32) {
     let (Some(pipeline), Some(splats)) = (steps.pipeline, steps.frame.splats) else { return };
     let sets = [steps.frame.view, steps.targets];
     for level in splats.steps(steps.frame.splat_count) {
         let uses = [splats.boxes().with(Access::COMPUTE_WRITE)];
         let mut enc = rec.pass(BOXES.name, &uses);
-        enc.dispatch(pipeline, &sets, &level, grid_over(level.count.into()));
+        enc.dispatch(pipeline, &sets, &Level { fronts, ..level }, grid_over(level.count.into()));
     }
 }

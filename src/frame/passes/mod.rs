@@ -18,6 +18,7 @@ pub mod pull;
 pub mod push;
 pub mod seed;
 pub mod shade;
+pub mod sides;
 pub mod surface;
 pub mod visibility;
 

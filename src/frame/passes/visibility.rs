@@ -6,7 +6,7 @@ use crate::frame::resource::Resource::{Boxes, Coverage, IncompleteFrame, ScreenC
 use crate::vk::shaders::{
     VISIBILITY_CLIP_LINES_FRAGMENT, VISIBILITY_CLIP_LINES_VERTEX, VISIBILITY_COMPUTE,
     VISIBILITY_COVERAGE_FRAGMENT, VISIBILITY_COVERAGE_VERTEX, VISIBILITY_FRAGMENT,
-    VISIBILITY_SUBGROUPS_COMPUTE, VISIBILITY_VERTEX,
+    VISIBILITY_SUBGROUPS_COMPUTE, VISIBILITY_VERTEX, constant,
 };
 use crate::vk::{Blend, DepthTest, Topology};
 
@@ -18,6 +18,19 @@ pub static COMPUTE: Pass = Pass {
     clears: &[],
     programs: Programs::OfFrame(|variant| {
         tiles(variant, [&VISIBILITY_COMPUTE, &VISIBILITY_SUBGROUPS_COMPUTE])
+    }),
+    commands: Commands::Dispatches,
+};
+
+/// The same for splats that face the eye, before sides.
+pub static COMPUTE_FRONTS: Pass = Pass {
+    name: "visibility",
+    reads: &[Splats, Boxes, ScreenClips],
+    writes: &[Visibility, IncompleteFrame],
+    clears: &[],
+    programs: Programs::OfFrame(|variant| {
+        let programs = tiles(variant, [&VISIBILITY_COMPUTE, &VISIBILITY_SUBGROUPS_COMPUTE]);
+        programs.into_iter().map(|program| program.with(constant::FRONTS, true)).collect()
     }),
     commands: Commands::Dispatches,
 };
@@ -36,11 +49,30 @@ pub static RASTER: Pass = Pass {
         };
         vec![Program::draw(modules, Domain::SplatTriangles)]
     }),
-    commands: Commands::Draws(DrawTargets {
-        colours: &[],
-        depth: Some((Visibility, InitialContents::Cleared)),
-        topology: Topology::Triangles,
-        test: DepthTest::Nearest,
-        blend: Blend::Replace,
+    commands: Commands::Draws(DEPTH),
+};
+
+/// The same for splats that face the eye, before sides.
+pub static RASTER_FRONTS: Pass = Pass {
+    name: "visibility",
+    reads: &[Splats, ScreenClips],
+    writes: &[],
+    clears: &[],
+    programs: Programs::OfScene(|variant| {
+        let modules = match variant.clips {
+            true => [&VISIBILITY_CLIP_LINES_VERTEX, &VISIBILITY_CLIP_LINES_FRAGMENT],
+            false => [&VISIBILITY_VERTEX, &VISIBILITY_FRAGMENT],
+        };
+        vec![Program::draw(modules, Domain::SplatTriangles).with(constant::FRONTS, true)]
     }),
+    commands: Commands::Draws(DEPTH),
+};
+
+/// Depth alone.
+const DEPTH: DrawTargets = DrawTargets {
+    colours: &[],
+    depth: Some((Visibility, InitialContents::Cleared)),
+    topology: Topology::Triangles,
+    test: DepthTest::Nearest,
+    blend: Blend::Replace,
 };

@@ -80,19 +80,22 @@ pub struct Baseline {
 
 impl Baseline {
     /// Copies the [valid](Surfels::is_valid) ones of `surfels`, which should be in Morton order
-    /// ([`Surfels::sort_morton`]).
+    /// ([`Surfels::sort_morton`]). A texture is replaced by its colours at the points.
     ///
     /// # Errors
     /// [`Error::Usage`] for no surfels, for 2³¹ or more, and for arrays of unequal length.
     pub fn new(surfels: &Surfels) -> Result<Self> {
         surfels.check()?;
-        let surfels = surfels.valid();
+        let mut surfels = surfels.valid();
         if surfels.is_empty() || surfels.len() >= FLIPPED as usize {
             let count = surfels.len();
             return Err(Error::Usage(format!(
                 "{count} surfels: the CPU baseline draws 1 to {}",
                 FLIPPED - 1
             )));
+        }
+        if let Some(texture) = surfels.texture.take() {
+            surfels.colours = Some(texture.baked(&surfels.positions, Some(&surfels.radii)));
         }
         Ok(Self {
             surfels,

@@ -8,7 +8,7 @@ use super::filtered_bounds::{FilteredBounds, PixelRange};
 use super::projected_scene::ProjectedScene;
 use super::rounding::RoundingBound;
 use super::tolerance::{Channel, Differences, Limits, Tolerance};
-use super::{Frame, Projector, Value, draw};
+use super::{Frame, Projector, Value, draw, sides};
 use crate::error::{Error, Result};
 use crate::geometry::{Camera, Surfels};
 use crate::picture::Picture;
@@ -102,13 +102,12 @@ impl Expected {
         }
         settings.splatting.normalization.check_weights(surfels.weights.is_some())?;
         let projector = Projector::new(camera, size, settings)?;
-        let scene = ProjectedScene::project(&projector, surfels);
+        let model = ErrorModel { projector: &projector, rounding: tolerance.rounding };
+        let project = || ProjectedScene::project(&projector, surfels);
+        let possible = sides::possible(&model, project(), size);
+        let bounds = ErrorBounds::new(&model, &possible, &Bands::new(&projector, &possible, size));
+        let scene = sides::pass(&projector, project(), size);
         let bands = Bands::new(&projector, &scene, size);
-        let bounds = ErrorBounds::new(
-            &ErrorModel { projector: &projector, rounding: tolerance.rounding },
-            &scene,
-            &bands,
-        );
         let depth_shown = settings.shading == Shading::Depth;
         let frame = draw(&projector, &scene, &bands, &());
         let mut expected =

@@ -16,7 +16,7 @@ type Mask = u16;
 pub(super) const SAMPLES: u32 = Mask::BITS;
 
 /// Scale of a disc that counts as surface: discs are drawn 1.3 times as large as needed, to leave no holes.
-const SOLID: f64 = 0.77;
+pub(super) const SOLID: f64 = 0.77;
 
 /// Least variance of the solid ellipse, px²; edge-on it would be 0.
 const LEAST: f64 = 1e-12;

@@ -1,9 +1,11 @@
 //! The outline of a splat's filtered kernel, and the kernel's weight.
 
+use super::coverage::SOLID;
 use super::footprint::ScreenClip;
 use super::{Projector, Splat};
-use crate::settings::Widen;
+
 use crate::settings::splatting::{Footprint, Kernel};
+use crate::settings::{Alpha, Widen};
 use glam::{DMat2, DVec2, DVec3};
 use std::f64::consts::FRAC_PI_4;
 
@@ -15,6 +17,9 @@ const LEAST_ANISOTROPY: f64 = 1e-4;
 
 /// Float32 rounding error of a difference of two variances, relative to the larger: four half units in the last place.
 const ROUNDING: f64 = 4.0 / (1 << 24) as f64;
+
+/// Half the side of a pixel, px.
+const HALF_PIXEL: f64 = 0.5;
 
 /// Least exponent of a Confetti kernel.
 const LEAST_EXPONENT: f64 = -10.0;
@@ -52,10 +57,10 @@ pub(super) struct Ellipse {
 }
 
 impl Ellipse {
-    /// The footprint of the visibility pass: just wide enough to cover the nearest pixel centre.
+    /// The footprint of the visibility pass: just wide enough to cover the nearest pixel centre. If α is coverage, its
+    /// semi-axes are those of the solid part and half a pixel.
     pub fn visibility(splat: &Splat, projector: &Projector) -> Self {
-        let least = f64::from(projector.settings.least_lowpass());
-        Self::new(splat, projector, |variance| variance + least)
+        Self::new(splat, projector, visible_variance(projector))
     }
 
     /// The footprint of the attribute pass: widened by the low-pass filter `H` (zwicker2004 equation 3), as the
@@ -63,9 +68,17 @@ impl Ellipse {
     pub fn attribute(splat: &Splat, projector: &Projector) -> Self {
         let settings = &projector.settings;
         let [least, lowpass] = [settings.least_lowpass(), settings.attribute_lowpass()].map(f64::from);
-        match settings.widen {
-            Widen::All => Self::new(splat, projector, |variance| variance + lowpass),
-            Widen::Small => Self::new(splat, projector, |variance| (variance + least).max(lowpass)),
+        let widened = |variance: f64| match settings.widen {
+            Widen::All => variance + lowpass,
+            Widen::Small => (variance + least).max(lowpass),
+        };
+        let visible = visible_variance(projector);
+        match settings.alpha {
+            Alpha::Mask => Self::new(splat, projector, widened),
+            // At least that of visibility, so that every visible pixel has attributes.
+            Alpha::Coverage => {
+                Self::new(splat, projector, |variance| widened(variance).max(visible(variance)))
+            }
         }
     }
 
@@ -254,6 +267,16 @@ impl Ellipse {
             return (self.rim(offset) - self.cutoff).abs() / slope;
         }
         to_ellipse(self.cutoff * self.sigma(), self.principal(offset).abs())
+    }
+}
+
+/// Maps the variance along an axis of a kernel to that of its visibility footprint, px².
+fn visible_variance(projector: &Projector) -> impl Fn(f64) -> f64 {
+    let least = f64::from(projector.settings.least_lowpass());
+    let (alpha, cutoff) = (projector.settings.alpha, projector.cutoff());
+    move |variance| match alpha {
+        Alpha::Mask => variance + least,
+        Alpha::Coverage => (SOLID * variance.sqrt() + HALF_PIXEL / cutoff).powi(2).max(least),
     }
 }
 

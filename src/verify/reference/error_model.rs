@@ -115,7 +115,7 @@ impl ErrorModel<'_> {
                             + shift * ellipse.steepness(hit.sigmas),
                         shift_error: shift * hit.sigmas,
                         half_ulps: ellipse.half_ulps(hit.in_kernel),
-                        certain: certain && !near_rim && !side.near,
+                        certain: splat.certain && certain && !near_rim && !side.near,
                         clipped: side.clipped,
                         or_clipped: side.or_clipped,
                     });

@@ -99,6 +99,10 @@ pub struct Splat {
     pub dual: bool,
     /// Clip lines on the screen, if the surfel has any.
     pub clip: Option<ScreenClip>,
+    /// Whether its surfel faces away and is not two-sided.
+    pub back: bool,
+    /// Whether rounding does not decide if [`Cull::Auto`] drops it.
+    pub certain: bool,
 }
 
 /// Clip lines on the screen.
@@ -197,6 +201,8 @@ impl Projector {
             square,
             dual: image.dual,
             clip: surfel.clip.map(|clip| self.screen_clip(&clip, centre, normal)),
+            back: facing >= 0.0 && !surfel.two_sided,
+            certain: true,
         };
         let attribute = Ellipse::attribute(&splat, self);
         // NaN fails the test, too.

@@ -1,7 +1,7 @@
 //! Float64 reference of every splatting method on the CPU, to compare GPU pictures with.
 //!
 //! Its functions are named as the GPU passes and share no code with them. [`Projector::footprint`] projects a surfel to
-//! a splat, `visibility` finds the depth up to which splats are blended, `coverage` the covered fraction of each pixel.
+//! a splat, `sides` drops those of the far side of closed surfaces, `visibility` finds the depth up to which splats are blended, `coverage` the covered fraction of each pixel.
 //! `attribute` sums the visible splats, or `nearest` takes the first one; `normalize` divides and shades, `filter` filters.
 //! [`ErrorBounds`] finds the pixels that float32 rounding can change, with every value they may take, from the float64
 //! frame alone; [`compare`] applies both.
@@ -30,6 +30,7 @@ pub mod pull_push;
 mod rank;
 mod rounding;
 mod shading;
+mod sides;
 #[cfg(test)]
 mod tests;
 mod tolerance;
@@ -141,7 +142,7 @@ pub fn render<'a>(
         return render(&parts.baked(), camera, size, settings, progress);
     }
     let projector = Projector::new(camera, size, settings)?;
-    let scene = ProjectedScene::project(&projector, surfels);
+    let scene = sides::pass(&projector, ProjectedScene::project(&projector, surfels), size);
     let frame = draw(&projector, &scene, &Bands::new(&projector, &scene, size), progress);
     if progress.is_cancelled() { Err(Error::Cancelled) } else { Ok(filter::pass(settings, frame)) }
 }

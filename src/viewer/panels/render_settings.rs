@@ -5,8 +5,9 @@ use super::widgets::{choice, choice_combo, combo};
 use crate::viewer::appearance::ColourAttribute;
 use crate::viewer::choices::Choices;
 use egui::{DragValue, ProgressBar, Slider, SliderClamping, Ui};
+use surfel::Settings;
 use surfel::geometry::{ColourMap, ValueRange};
-use surfel::settings::{Alpha, Cull};
+use surfel::settings::{Alpha, Choice, Cull};
 
 /// Shows the panel.
 pub fn show(ui: &mut Ui, choices: &mut Choices<'_>) {
@@ -20,12 +21,22 @@ pub fn show(ui: &mut Ui, choices: &mut Choices<'_>) {
     ui.checkbox(&mut smooth, "smooth outlines")
         .on_hover_text("α is the fraction of a pixel that surfaces cover, in sixteenths; otherwise it is whether a surface covers its centre.");
     settings.alpha = if smooth { Alpha::Coverage } else { Alpha::Mask };
-    let mut back = settings.cull == Cull::Back;
-    ui.checkbox(&mut back, "cull back faces")
-        .on_hover_text("For closed surfaces whose normals point outwards.");
-    settings.cull = if back { Cull::Back } else { Cull::None };
+    culling(ui, settings);
     ui.checkbox(choices.parallel, "parallel projection")
         .on_hover_text("Objects at the pivot's distance keep their size.");
+}
+
+/// Shows which surfels are culled by their orientation.
+fn culling(ui: &mut Ui, settings: &mut Settings) {
+    combo(ui, "culling", settings.cull.name(), "Which surfels are culled by their orientation.", |ui| {
+        for cull in Cull::ALL {
+            let is_refused = Settings { cull: *cull, ..settings.clone() }.check().is_err();
+            let reason = is_refused.then_some("Only splats along viewing rays tell sides apart.");
+            if choice(ui, settings.cull == *cull, cull.name(), cull.about(), reason) {
+                settings.cull = *cull;
+            }
+        }
+    });
 }
 
 /// Shows what surfels are coloured by, with colour map and range if that has values.

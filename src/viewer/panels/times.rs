@@ -259,6 +259,8 @@ fn pass_text(label: &str) -> &'static str {
         "clear" => "Clears counts and lists.",
         "cull" => "Culls clusters of surfels by their bounds.",
         "footprint" => "Projects surfels to splats, culls and counts them.",
+        "filter" => "Filters the pixels of the lit picture.",
+        "sides" => "Drops splats of the far side of closed surfaces.",
         "visibility" => "Renders the depth of the nearest surface from the splats.",
         "boxes" => "Bounds the splats of each node of the hierarchy.",
         "surface" => "Rasterizes, blends and shades the splats tile by tile.",

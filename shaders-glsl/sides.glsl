@@ -1,0 +1,83 @@
+// Sides: drops splats that face away from the eye where a surface that faces it hides them or lies at most a radius behind their centres:
+// the far side of a closed surface, which would shine past outlines as if it faced the eye. Others are the back of an open surface.
+#version 450
+#pragma variant TILES COMPUTE
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+
+#ifdef TILES
+#define VISIBLE_ACCESS readonly
+#define PER_CLUSTER
+#include "lib/visible_clusters.glsl"
+#endif
+#include "lib/instance.glsl"
+#define MODIFIES_SPLATS
+#define CLIP_ACCESS readonly
+#include "lib/splat.glsl"
+
+#ifdef COMPUTE
+
+#include "lib/cull_reasons.glsl"
+
+layout(local_size_x = 64) in;
+
+#ifdef TILES
+
+#include "lib/box.glsl"
+#include "lib/pixels.glsl"
+
+layout(set = 0, binding = 19, std430) writeonly buffer SplatBoxes { Box splat_boxes[]; };
+
+float front_key(uvec2 pixel) {
+    return uintBitsToFloat(visibility[pixel_index(ivec2(pixel))]);
+}
+
+bool has_surfel(uint slot) {
+    return slot < chunk.count && instance_index() < chunk.instance_count;
+}
+
+#else
+
+layout(set = 1, binding = 9) uniform texture2D visibility_image;
+
+float front_key(uvec2 pixel) {
+    return texelFetch(visibility_image, ivec2(pixel), 0).r;
+}
+
+uint slot_of_invocation() {
+    return gl_GlobalInvocationID.x;
+}
+
+bool has_surfel(uint slot) {
+    return slot < chunk.count;
+}
+
+#endif
+
+// κ of the point a radius behind the centre, moved back by ε as those of visibility are.
+float key_behind(Splat splat) {
+    float key = plane_at(splat.plane_hi, splat.plane_lo, splat.offset);
+#ifdef TILES
+    if (has_linear_depth()) key = frame.near / key;
+#else
+    if (has_linear_depth()) key = view.near / key;
+#endif
+    // The splat's ε is frame.epsilon radii.
+    float radii = 1.0 + 1.0 / frame.epsilon;
+    return PERSPECTIVE ? key / (1.0 + radii * (1.0 / abs(splat.epsilon) - 1.0)) : key - radii * abs(splat.epsilon);
+}
+
+void main() {
+    uint slot = slot_of_invocation();
+    if (!has_surfel(slot)) return;
+    Splat splat = splat_of(slot);
+    if (!is_drawn(splat) || !is_back(splat)) return;
+    if (front_key(uvec2(anchor_of(splat))) < key_behind(splat)) return;
+    store_culled(splat_index(slot));
+#ifdef TILES
+    splat_boxes[splat_index(slot)] = EMPTY_BOX;
+#endif
+    count(BACK);
+}
+
+#endif

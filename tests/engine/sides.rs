@@ -1,0 +1,62 @@
+//! Automatic culling: as of back faces on closed surfaces, as none on open ones.
+
+use crate::support::gpu::{assert_silent, device, render};
+use glam::DVec3;
+use std::sync::Arc;
+use surfel::geometry::{Camera, Surfels};
+use surfel::settings::methods::{Method, perspective_ewa, sprites};
+use surfel::settings::{Alpha, Cull};
+use surfel::verify::scenes;
+use surfel::vk::{Device, DeviceLimits};
+use surfel::{Picture, Rasterizer, RenderOptions, Settings};
+
+const SIZE: [u32; 2] = [256; 2];
+
+/// Pictures of `surfels` from `eye` with each culling in turn.
+fn pictures<const N: usize>(
+    device: &Arc<Device>,
+    surfels: &Surfels,
+    eye: DVec3,
+    (method, rasterizer): (&Method, Rasterizer),
+    cullings: [Cull; N],
+) -> [Picture; N] {
+    let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::Y, 0.8, 1.0, 0.1).unwrap();
+    let options = RenderOptions { size: SIZE, rasterizer: rasterizer.into(), ..Default::default() };
+    let settings = |cull| Settings { cull, alpha: Alpha::Coverage, ..method.settings() };
+    cullings.map(|cull| render(device, surfels, &camera, &settings(cull), options))
+}
+
+/// Pixels whose colour or α differ by more than 2 %.
+fn different(a: &Picture, b: &Picture) -> usize {
+    let differs = |(a, b): (&[f32; 4], &[f32; 4])| a.iter().zip(b).any(|(a, b)| (a - b).abs() > 0.02);
+    a.colour.iter().zip(&b.colour).filter(|(a, b)| differs((a, b))).count()
+}
+
+fn covered(picture: &Picture) -> usize {
+    picture.colour.iter().filter(|colour| colour[3] > 0.0).count()
+}
+
+#[test]
+fn closed_surfaces_are_culled_and_open_ones_are_not() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let closed = scenes::open("scene:bumpy-sphere?points=20000").unwrap();
+    let open = scenes::open("scene:disc?points=5000").unwrap();
+    for method in [perspective_ewa::METHOD, sprites::UNFILTERED] {
+        for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
+            let how = (&method, rasterizer);
+            let eye = DVec3::new(1.0, 0.8, 2.0);
+            let [none, back, auto] =
+                pictures(&device, &closed, eye, how, [Cull::None, Cull::Back, Cull::Auto]);
+            let [kept, culled] = [&none, &back].map(|picture| different(&auto, picture));
+            let below = DVec3::new(0.4, -1.5, 1.2);
+            let [both, nothing, whole] =
+                pictures(&device, &open, below, how, [Cull::None, Cull::Back, Cull::Auto]);
+            eprintln!("{} {rasterizer:?}: {kept} px differ from none, {culled} from back", method.name);
+            assert!(kept > culled, "{kept} px differ from none, {culled} from back");
+            assert!(2_000 * culled <= covered(&auto), "{culled} px differ from culled back faces");
+            assert_eq!((different(&whole, &both), covered(&nothing)), (0, 0), "the disc from below");
+            assert!(covered(&whole) > 5_000);
+        }
+    }
+    assert_silent(&device);
+}
