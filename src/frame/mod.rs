@@ -16,7 +16,8 @@
 //! 2. `frame/passes/NAME.rs`: a static `Pass` of that name: the resources that it reads, writes and clears, its programs (shader and domain),
 //!    and whether they are dispatches or draws. Layouts, barriers, label and timer follow; a test compares it with the shader's declarations.
 //! 3. `frame/methods/METHOD.rs`: its position among the method's passes, on each path. Passes after `normalize`, `surface` and
-//!    `shade` can modify `Image`, on the compute path; the output images of the raster path are not visible to passes.
+//!    `shade` can modify `Image`, on the compute path; on the raster path only if `raster_targets` makes it an image that is stored, too, as for
+//!    `filter`.
 //! 4. `verify/reference/NAME.rs`, of pull–push `verify/reference/pull_push/NAME.rs`: the same pass in float64, called where the reference
 //!    computes a pixel.
 //! 5. `tests/engine/NAME.rs`: compares pictures with the reference.

@@ -9,8 +9,7 @@ use crate::frame::targets::sums_format;
 use crate::frame::variant::Variant;
 use crate::scene::Streams;
 use crate::settings::splatting::Visibility;
-use crate::settings::{Cull, Settings};
-use crate::settings::{Outputs, Precision, Rasterizer};
+use crate::settings::{Cull, Outputs, Precision, Rasterizer, Settings};
 use crate::vk::{Device, input_layout};
 use ash::vk;
 

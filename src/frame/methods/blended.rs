@@ -12,6 +12,9 @@
 //! surfels ─ cull → clusters ─ footprint → splats ─ boxes → hierarchy ─ surface → picture, normal, depth
 //! ```
 //!
+//! With `--cull auto`, visibility first runs over the splats that face the eye, and `sides` drops some of the others. `filter` filters the
+//! picture, if the settings say so.
+//!
 //! If ε is measured along the camera's axis, visibility has its own footprints, of discs moved by ε.
 
 use super::Path;

@@ -103,10 +103,10 @@ impl Expected {
         settings.splatting.normalization.check_weights(surfels.weights.is_some())?;
         let projector = Projector::new(camera, size, settings)?;
         let model = ErrorModel { projector: &projector, rounding: tolerance.rounding };
-        let project = || ProjectedScene::project(&projector, surfels);
-        let possible = sides::possible(&model, project(), size);
+        let scene = ProjectedScene::project(&projector, surfels);
+        let possible = sides::possible(&model, scene.clone(), size);
         let bounds = ErrorBounds::new(&model, &possible, &Bands::new(&projector, &possible, size));
-        let scene = sides::pass(&projector, project(), size);
+        let scene = sides::pass(&projector, scene, size);
         let bands = Bands::new(&projector, &scene, size);
         let depth_shown = settings.shading == Shading::Depth;
         let frame = draw(&projector, &scene, &bands, &());

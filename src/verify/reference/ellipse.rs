@@ -3,7 +3,6 @@
 use super::coverage::SOLID;
 use super::footprint::ScreenClip;
 use super::{Projector, Splat};
-
 use crate::settings::splatting::{Footprint, Kernel};
 use crate::settings::{Alpha, Widen};
 use glam::{DMat2, DVec2, DVec3};

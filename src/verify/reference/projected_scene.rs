@@ -26,6 +26,7 @@ pub struct Counts {
 }
 
 /// The drawn splats of a frame, in the order of the surfels, and the counts.
+#[derive(Clone)]
 pub(super) struct ProjectedScene {
     pub splats: Vec<Splat>,
     /// Separate splats for visibility, if the settings ask for them: those of discs moved away by ε along the camera's
