@@ -78,6 +78,19 @@ float key_of_disc(float w, vec3 position, float lean) {
     return 1.0 - (z - view.near) * view.key_slope;
 }
 
+// Depth below its centre down to which the disc of a front-facing convex surface covers samples, relative to the radius of curvature and to
+// the cosine between normal and viewing ray. At grazing angles the tangent plane of a sphere leaves its outline at twice that depth, but the
+// discs of neighbours overlap: pictures of scans are nearest to the truth with half of it.
+const float TURN_DEPTH = 0.25;
+
+// See least_key; 0 where the surface does not turn away.
+float least_key_of(uint i, Disc disc) {
+    float curvature = curvature_of(i), distance = PERSPECTIVE ? length(disc.hi) : 1.0;
+    if (!(curvature > 0.0 && disc.facing.x < 0.0)) return 0.0;
+    float depth = TURN_DEPTH * -disc.facing.x / distance / curvature, key = key_of_disc(disc.w.x, disc.hi, 0.0);
+    return PERSPECTIVE ? key / (1.0 + depth / distance) : key - view.key_slope * depth;
+}
+
 // κ (has_linear_depth: distance) at the anchor, and its derivatives, of a plane that is not the tangent plane; `to_centre` is in px.
 mat2x3 flat_plane(Disc disc, vec2 slope, vec2 to_centre) {
     vec2 value = has_linear_depth() ? disc.w : vec2(view.near / disc.w.x, 0.0);
@@ -199,7 +212,7 @@ uint footprint(uint i, out Splat splat) {
     splat.offset = CONFETTI ? fine_offset(disc, image.conic, anchor) : to_centre + image.conic.offset;
     splat.axis = image.conic.axis;
     splat.variance = image.conic.variance.x;
-    splat.axis_residual = image.conic.axis_residual;
+    splat.detail = CURVATURES ? least_key_of(i, disc) : image.conic.axis_residual;
     splat.anchor = pack_anchor(pixel);
     if (CULL_AUTO && disc.facing.x >= 0.0 && !is_two_sided(i)) splat.anchor |= BACK_SPLAT;
     float epsilon = MOVED ? 0.0 : frame.epsilon * disc.radius;

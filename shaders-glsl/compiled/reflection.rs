@@ -25,7 +25,7 @@ pub static ATTRIBUTE_VERTEX: Module = Module {
     name: "attribute_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("attribute_vertex.spv"),
-    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58, 67],
+    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::WEIGHTS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -35,7 +35,7 @@ pub static ATTRIBUTE_FRAGMENT: Module = Module {
     name: "attribute_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("attribute_fragment.spv"),
-    constants: &[0, 4, 15, 16, 19, 27],
+    constants: &[0, 4, 15, 16, 19, 27, 70],
     resources: &[(&resource::FRAME, false)],
     push: 0,
 };
@@ -45,7 +45,7 @@ pub static ATTRIBUTE_COMPUTE: Module = Module {
     name: "attribute_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("attribute_compute.spv"),
-    constants: &[0, 3, 4, 14, 15, 16, 17, 19, 23, 24, 44, 45, 46, 47, 67, 69],
+    constants: &[0, 3, 4, 14, 15, 16, 17, 19, 23, 24, 44, 45, 46, 47, 67, 69, 70],
     resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, false), (&resource::SUMS0, true), (&resource::SUMS1, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -55,7 +55,7 @@ pub static ATTRIBUTE_CLIP_LINES_VERTEX: Module = Module {
     name: "attribute_clip_lines_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("attribute_clip_lines_vertex.spv"),
-    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 23, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58, 67],
+    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 23, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false), (&resource::WEIGHTS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -65,7 +65,7 @@ pub static ATTRIBUTE_CLIP_LINES_FRAGMENT: Module = Module {
     name: "attribute_clip_lines_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("attribute_clip_lines_fragment.spv"),
-    constants: &[0, 4, 15, 16, 19, 23, 24, 27],
+    constants: &[0, 4, 15, 16, 19, 23, 24, 27, 70],
     resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false)],
     push: 0,
 };
@@ -75,7 +75,7 @@ pub static ATTRIBUTE_SUBGROUPS_COMPUTE: Module = Module {
     name: "attribute_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("attribute_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 14, 15, 16, 17, 19, 23, 24, 44, 45, 46, 47, 67, 69],
+    constants: &[0, 3, 4, 14, 15, 16, 17, 19, 23, 24, 44, 45, 46, 47, 67, 69, 70],
     resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, false), (&resource::SUMS0, true), (&resource::SUMS1, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -295,7 +295,7 @@ pub static FOOTPRINT_COMPUTE: Module = Module {
     name: "footprint_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("footprint_compute.spv"),
-    constants: &[0, 1, 2, 12, 13, 14, 15, 16, 21, 23, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 67, 68],
+    constants: &[0, 1, 2, 12, 13, 14, 15, 16, 21, 23, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 67, 68, 70],
     resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -305,7 +305,7 @@ pub static FOOTPRINT_TILES_COMPUTE: Module = Module {
     name: "footprint_tiles_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("footprint_tiles_compute.spv"),
-    constants: &[0, 1, 2, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 21, 23, 26, 27, 37, 45, 46, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 67, 68],
+    constants: &[0, 1, 2, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 21, 23, 26, 27, 37, 45, 46, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 67, 68, 70],
     resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::SPLAT_ATTRIBUTES, true), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::WEIGHTS, false), (&resource::SPLAT_BOXES, true), (&resource::ORDER, false), (&resource::VISIBLE_CLUSTERS, false), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -315,7 +315,7 @@ pub static NEAREST_VERTEX: Module = Module {
     name: "nearest_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("nearest_vertex.spv"),
-    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 37, 50, 51, 52, 53, 54, 57, 58, 67],
+    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -325,7 +325,7 @@ pub static NEAREST_FRAGMENT: Module = Module {
     name: "nearest_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("nearest_fragment.spv"),
-    constants: &[0, 4, 15, 16],
+    constants: &[0, 4, 15, 16, 70],
     resources: &[(&resource::FRAME, false)],
     push: 0,
 };
@@ -335,7 +335,7 @@ pub static NEAREST_COMPUTE: Module = Module {
     name: "nearest_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 69],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 69, 70],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -345,7 +345,7 @@ pub static NEAREST_COVERAGE_VERTEX: Module = Module {
     name: "nearest_coverage_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("nearest_coverage_vertex.spv"),
-    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 23, 37, 50, 51, 52, 53, 54, 57, 58, 67],
+    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 23, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -355,7 +355,7 @@ pub static NEAREST_COVERAGE_FRAGMENT: Module = Module {
     name: "nearest_coverage_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("nearest_coverage_fragment.spv"),
-    constants: &[0, 4, 15, 16, 23, 24],
+    constants: &[0, 4, 15, 16, 23, 24, 70],
     resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false), (&resource::COVERAGE, true)],
     push: 0,
 };
@@ -365,7 +365,7 @@ pub static NEAREST_CLIP_LINES_VERTEX: Module = Module {
     name: "nearest_clip_lines_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("nearest_clip_lines_vertex.spv"),
-    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 23, 37, 50, 51, 52, 53, 54, 57, 58, 67],
+    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 23, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -375,7 +375,7 @@ pub static NEAREST_CLIP_LINES_FRAGMENT: Module = Module {
     name: "nearest_clip_lines_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("nearest_clip_lines_fragment.spv"),
-    constants: &[0, 4, 15, 16, 23, 24],
+    constants: &[0, 4, 15, 16, 23, 24, 70],
     resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false)],
     push: 0,
 };
@@ -385,7 +385,7 @@ pub static NEAREST_SUBGROUPS_COMPUTE: Module = Module {
     name: "nearest_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 69],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 69, 70],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -395,7 +395,7 @@ pub static NEAREST_SLICES_COMPUTE: Module = Module {
     name: "nearest_slices_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_slices_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 69],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 69, 70],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::SUMS0, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -405,7 +405,7 @@ pub static NEAREST_SUBGROUPS_SLICES_COMPUTE: Module = Module {
     name: "nearest_subgroups_slices_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_subgroups_slices_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 69],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 69, 70],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::SUMS0, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -715,7 +715,7 @@ pub static SURFACE_COMPUTE: Module = Module {
     name: "surface_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 66, 67, 69],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 66, 67, 69, 70],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -725,7 +725,7 @@ pub static SURFACE_SUBGROUPS_COMPUTE: Module = Module {
     name: "surface_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 66, 67, 69],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 66, 67, 69, 70],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -735,7 +735,7 @@ pub static VISIBILITY_VERTEX: Module = Module {
     name: "visibility_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("visibility_vertex.spv"),
-    constants: &[0, 15, 16, 37, 67, 69],
+    constants: &[0, 15, 16, 37, 67, 69, 70],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -745,7 +745,7 @@ pub static VISIBILITY_FRAGMENT: Module = Module {
     name: "visibility_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("visibility_fragment.spv"),
-    constants: &[0, 15, 16],
+    constants: &[0, 15, 16, 70],
     resources: &[(&resource::FRAME, false)],
     push: 0,
 };
@@ -755,7 +755,7 @@ pub static VISIBILITY_COMPUTE: Module = Module {
     name: "visibility_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("visibility_compute.spv"),
-    constants: &[0, 15, 16, 23, 24, 31, 44, 47, 67, 69],
+    constants: &[0, 15, 16, 23, 24, 31, 44, 47, 67, 69, 70],
     resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_CLIPS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -765,7 +765,7 @@ pub static VISIBILITY_COVERAGE_VERTEX: Module = Module {
     name: "visibility_coverage_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("visibility_coverage_vertex.spv"),
-    constants: &[0, 15, 16, 23, 37, 67, 69],
+    constants: &[0, 15, 16, 23, 37, 67, 69, 70],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -775,7 +775,7 @@ pub static VISIBILITY_COVERAGE_FRAGMENT: Module = Module {
     name: "visibility_coverage_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("visibility_coverage_fragment.spv"),
-    constants: &[0, 15, 16, 23, 24],
+    constants: &[0, 15, 16, 23, 24, 70],
     resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false), (&resource::COVERAGE, true)],
     push: 0,
 };
@@ -785,7 +785,7 @@ pub static VISIBILITY_CLIP_LINES_VERTEX: Module = Module {
     name: "visibility_clip_lines_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("visibility_clip_lines_vertex.spv"),
-    constants: &[0, 15, 16, 23, 37, 67, 69],
+    constants: &[0, 15, 16, 23, 37, 67, 69, 70],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -795,7 +795,7 @@ pub static VISIBILITY_CLIP_LINES_FRAGMENT: Module = Module {
     name: "visibility_clip_lines_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("visibility_clip_lines_fragment.spv"),
-    constants: &[0, 15, 16, 23, 24],
+    constants: &[0, 15, 16, 23, 24, 70],
     resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false)],
     push: 0,
 };
@@ -805,7 +805,7 @@ pub static VISIBILITY_SUBGROUPS_COMPUTE: Module = Module {
     name: "visibility_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("visibility_subgroups_compute.spv"),
-    constants: &[0, 15, 16, 23, 24, 31, 44, 47, 67, 69],
+    constants: &[0, 15, 16, 23, 24, 31, 44, 47, 67, 69, 70],
     resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -844,6 +844,8 @@ pub mod constant {
     pub const CULL_AUTO: u32 = 68;
     /// `CULL_BACK`, first in `shaders-glsl/cull.glsl`.
     pub const CULL_BACK: u32 = 1;
+    /// `CURVATURES`, first in `shaders-glsl/attribute.glsl`.
+    pub const CURVATURES: u32 = 70;
     /// `ELLIPSES`, first in `shaders-glsl/attribute.glsl`.
     pub const ELLIPSES: u32 = 12;
     /// `ELLIPSE_OFFSET`, first in `shaders-glsl/attribute.glsl`.
@@ -1981,7 +1983,7 @@ pub mod layout {
         /// Byte 16.
         pub variance: f32,
         /// Byte 20.
-        pub axis_residual: f32,
+        pub detail: f32,
         /// Byte 24.
         pub anchor: u32,
         /// Byte 28.
@@ -1998,7 +2000,7 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Splat, offset) == 0);
     const _: () = assert!(std::mem::offset_of!(Splat, axis) == 8);
     const _: () = assert!(std::mem::offset_of!(Splat, variance) == 16);
-    const _: () = assert!(std::mem::offset_of!(Splat, axis_residual) == 20);
+    const _: () = assert!(std::mem::offset_of!(Splat, detail) == 20);
     const _: () = assert!(std::mem::offset_of!(Splat, anchor) == 24);
     const _: () = assert!(std::mem::offset_of!(Splat, epsilon) == 28);
     const _: () = assert!(std::mem::offset_of!(Splat, plane_hi) == 32);

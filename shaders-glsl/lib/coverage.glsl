@@ -28,19 +28,22 @@ Ellipse solid_ellipse(Splat splat, uint clip) {
     return ellipse_of(splat, max(variance_of(splat), LEAST_SOLID), clip);
 }
 
-// Mask of the samples that a splat covers at a pixel centre where it has a fragment; `solid` is its solid_ellipse.
-uint coverage_mask(Ellipse solid, vec2 pixel) {
+// Mask of the samples that a splat covers at a pixel centre where it has a fragment; `solid` is its solid_ellipse, `least_key` its least_key.
+uint coverage_mask(Ellipse solid, float least_key, vec2 pixel) {
     vec2 d = pixel - solid.anchor;
     vec2 e = d - solid.offset;
     float limit = SOLID * frame.cutoff;
     vec3 nearness = vec3(1.0, 0.0, 0.0);
-    if (on_plane()) nearness = vec3(plane_at(solid.plane_hi, solid.plane_lo, d), solid.plane_hi.yz) / solid.key_centre;
+    vec3 plane = vec3(0.0);
+    if (on_plane() || CURVATURES) plane = vec3(plane_at(solid.plane_hi, solid.plane_lo, d), solid.plane_hi.yz);
+    if (on_plane()) nearness = plane / solid.key_centre;
     uint mask = 0;
     for (uint k = 0; k < SAMPLES; k++) {
         vec2 s = sample_position(k);
         vec2 u = vec2(dot(solid.whitening.xy, e + s), dot(solid.whitening.zw, e + s));
         if (on_plane()) u /= clamp(nearness.x + dot(nearness.yz, s), 1.0 / MOST_STRETCH, MOST_STRETCH);
         bool inside = rim() > 1.0 ? max(abs(u.x), abs(u.y)) <= limit : dot(u, u) <= limit * limit;
+        if (CURVATURES) inside = inside && plane.x - least_key + dot(plane.yz, s) >= 0.0;
         if (has_clip(solid.clip)) inside = inside && clip_distance(screen_clip(solid.clip), d + s) >= -SEAM;
         mask |= uint(inside) << k;
     }
@@ -53,10 +56,10 @@ uint coverage_mask(Ellipse solid, vec2 pixel) {
 layout(set = 1, binding = 5, std430) buffer Coverage { uint coverage[]; }; // the 16 samples of each pixel, one bit each
 
 // Adds the samples that a splat covers at a pixel centre where it has a fragment.
-void add_coverage(uint index, Ellipse solid, vec2 pixel) {
+void add_coverage(uint index, Ellipse solid, float least_key, vec2 pixel) {
     uint covered = coverage[index];
     if (covered == ALL_SAMPLES) return;
-    uint mask = coverage_mask(solid, pixel);
+    uint mask = coverage_mask(solid, least_key, pixel);
     if ((mask & ~covered) != 0) atomicOr(coverage[index], mask);
 }
 #endif

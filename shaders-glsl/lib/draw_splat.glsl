@@ -10,6 +10,7 @@ layout(location = 3) flat out vec4 plane_lo_disc;
 layout(location = 9) flat out uint clip_out;
 #endif
 layout(location = 11) flat out mat2x4 fine;
+layout(location = 13) flat out vec2 least_keys; // of fragments and of samples
 #ifdef COVERAGE
 layout(location = 10) flat out vec4 solid_whitening;
 #endif
@@ -46,6 +47,7 @@ void write_splat_vertex(uint i, Splat splat, vec2 variance, int corner) {
     anchor_offset = vec4(ellipse.anchor, ellipse.offset);
     whitening = ellipse.whitening;
     fine = ellipse.fine;
+    least_keys = vec2(ellipse.least_key, least_key(splat));
     // Fragment shaders read distances in the world's unit.
     if (INSTANCED && has_linear_depth()) scale_plane(view.scale, ellipse.plane_hi, ellipse.plane_lo);
     plane_epsilon = vec4(ellipse.plane_hi, splat.epsilon);
@@ -84,6 +86,7 @@ layout(location = 9) flat in uint clip;
 const uint clip = ~0u;
 #endif
 layout(location = 11) flat in mat2x4 fine;
+layout(location = 13) flat in vec2 least_keys;
 #ifdef COVERAGE
 layout(location = 10) flat in vec4 solid_whitening;
 #endif
@@ -97,13 +100,14 @@ layout(depth_less) out float gl_FragDepth;
 void evaluate_fragment(out vec2 m, out float key, out float rank) {
     float key_centre = centre_key(plane_epsilon.xyz, plane_lo_disc.xyz, anchor_offset.zw);
     Ellipse ellipse = Ellipse(
-        anchor_offset.xy, anchor_offset.zw, whitening, fine, plane_epsilon.xyz, plane_lo_disc.xyz, key_centre, clip);
+        anchor_offset.xy, anchor_offset.zw, whitening, fine, plane_epsilon.xyz, plane_lo_disc.xyz, key_centre, least_keys.x,
+        clip);
     vec2 centre = gl_FragCoord.xy - frame.origin;
     if (!splat_fragment(ellipse, centre, m, key, rank)) discard;
 #ifdef COVERAGE
     uvec2 pixel = uvec2(centre);
     ellipse.whitening = solid_whitening;
-    add_coverage(pixel.y * uint(frame.viewport.x) + pixel.x, ellipse, centre);
+    add_coverage(pixel.y * uint(frame.viewport.x) + pixel.x, ellipse, least_keys.y, centre);
 #endif
 }
 

@@ -6,6 +6,7 @@
 
 layout(constant_id = 14) const bool WIDEN_SMALL = false; // the low-pass filter widens only axes shorter than itself
 layout(constant_id = 16) const bool CONFETTI = false; // the kernel is ψ_E
+layout(constant_id = 70) const bool CURVATURES = false; // discs of convex surfaces cover samples down to a depth only: see least_key
 layout(constant_id = 67) const bool COVERAGE_FOOTPRINT = false; // α is coverage: visibility's footprint is that of the solid part
 
 // Solid part of a footprint: discs are 1.3 times as large as needed, to leave no holes.
@@ -17,7 +18,7 @@ struct Splat {
     vec2 offset;         // centre of the variance's ellipse relative to the anchor, px
     vec2 axis;           // unit major axis of the variance V
     float variance;      // V's larger eigenvalue, px²
-    float axis_residual; // angle from `axis`, which is rounded, to V's axis, rad; CONFETTI, otherwise 0
+    float detail;        // CONFETTI: angle from `axis`, which is rounded, to V's axis, rad; CURVATURES: see least_key; otherwise 0
     uint anchor;         // packed anchor pixel, DRAWN_SPLAT and BACK_SPLAT: see pack_anchor
     float epsilon;       // perspective: 1 / (1 + ε/z), a factor of κ; orthographic: ε as a difference of κ; negative if the normal faces away
     vec3 plane_hi;       // κ of the tangent plane (has_linear_depth: distance) at the anchor, and its derivatives along x and y, per px, as
@@ -56,7 +57,7 @@ uint splat_index(uint i) {
 void store_splat(uint index, Splat splat) {
     uint k = 4 * index;
     splat_rows[k] = floatBitsToUint(vec4(splat.offset, splat.axis));
-    splat_rows[k + 1] = uvec4(floatBitsToUint(vec2(splat.variance, splat.axis_residual)), splat.anchor, floatBitsToUint(splat.epsilon));
+    splat_rows[k + 1] = uvec4(floatBitsToUint(vec2(splat.variance, splat.detail)), splat.anchor, floatBitsToUint(splat.epsilon));
     splat_rows[k + 2] = floatBitsToUint(vec4(splat.plane_hi, splat.sqrt_det));
     splat_rows[k + 3] = floatBitsToUint(vec4(splat.plane_lo, splat.key_disc));
 }
@@ -100,6 +101,16 @@ vec2 anchor_of(Splat splat) {
 
 bool is_drawn(Splat splat) {
     return (splat.anchor & DRAWN_SPLAT) != 0;
+}
+
+// κ of the tangent plane down to which it covers samples: farther, the surface has turned away from the eye. 0: everywhere.
+float least_key(Splat splat) {
+    return CURVATURES ? splat.detail : 0.0;
+}
+
+// κ of the tangent plane down to which there are fragments: half a pixel beyond the samples that it covers.
+float least_fragment_key(Splat splat) {
+    return CURVATURES ? splat.detail - HALF_PIXEL * length(splat.plane_hi.yz) : 0.0;
 }
 
 bool is_back(Splat splat) {
@@ -182,6 +193,7 @@ struct Ellipse {
     vec3 plane_hi;
     vec3 plane_lo;
     float key_centre; // on_plane: κ of the plane at the centre
+    float least_key;  // CURVATURES: κ of the plane down to which there are fragments
     uint clip;        // see screen_clip_number
 };
 
@@ -223,8 +235,8 @@ vec4 fine_row(vec2 axis, vec2 correction, float variance, vec2 offset) {
 
 mat2x4 fine_rows(Splat splat, vec2 variance) {
     vec2 minor_axis = vec2(-splat.axis.y, splat.axis.x);
-    return mat2x4(fine_row(splat.axis, splat.axis_residual * minor_axis, variance.x, splat.offset),
-                  fine_row(minor_axis, -splat.axis_residual * splat.axis, variance.y, splat.offset));
+    return mat2x4(fine_row(splat.axis, splat.detail * minor_axis, variance.x, splat.offset),
+                  fine_row(minor_axis, -splat.detail * splat.axis, variance.y, splat.offset));
 }
 
 Ellipse ellipse_of(Splat splat, vec2 variance, uint clip) {
@@ -232,7 +244,7 @@ Ellipse ellipse_of(Splat splat, vec2 variance, uint clip) {
     vec4 whitening = vec4(splat.axis * inverse.x, vec2(-splat.axis.y, splat.axis.x) * inverse.y);
     mat2x4 fine = CONFETTI ? fine_rows(splat, variance) : mat2x4(0.0);
     float key = centre_key(splat.plane_hi, splat.plane_lo, splat.offset);
-    return Ellipse(anchor_of(splat), splat.offset, whitening, fine, splat.plane_hi, splat.plane_lo, key, clip);
+    return Ellipse(anchor_of(splat), splat.offset, whitening, fine, splat.plane_hi, splat.plane_lo, key, least_fragment_key(splat), clip);
 }
 
 // Kernel coordinates along the ellipse's axes, σ, at d px from the anchor.
@@ -269,6 +281,7 @@ bool splat_fragment(Ellipse ellipse, vec2 pixel, out vec2 m, out float key, out 
         rim() > 1.0 ? max(abs(m.x), abs(m.y)) <= frame.cutoff : dot(m, m) <= frame.cutoff * frame.cutoff;
     rank = 1.0;
     if (has_clip(ellipse.clip)) rank = clip_rank(clip_distance(screen_clip(ellipse.clip), d));
+    if (CURVATURES) inside = inside && key >= ellipse.least_key;
     return inside && rank > 0.0 && key > frame.key_far && key <= 1.0;
 }
 

@@ -44,6 +44,11 @@ vec3 stored_normal(uint i) {
     return uintBitsToFloat(uvec3(normals[k], normals[k + 1], normals[k + 2]));
 }
 
+// Larger principal curvature of the surface, 1 / unit, which follows the normal; above 0 where it bends away from the normal.
+float curvature_of(uint i) {
+    return uintBitsToFloat(normals[NORMAL_OFFSET + NORMAL_STRIDE * i + 3]);
+}
+
 // Unit normal.
 vec3 normal_of(uint i) {
     vec3 normal = stored_normal(i);

@@ -111,6 +111,7 @@ struct TileSplat {
     KernelMap kernel;
     Affine plane;
     float key_centre; // on_plane: κ of the plane at the centre
+    float least_key;  // CURVATURES: see Ellipse
     vec3 lines[2];    // CLIPS: see ScreenClip
     float concave;
 };
@@ -132,6 +133,7 @@ TileSplat splat_on_tile(Ellipse ellipse, vec2 origin) {
     splat.kernel = kernel_map_on_tile(ellipse, d);
     splat.plane = plane_on_tile(ellipse.plane_hi, ellipse.plane_lo, d);
     splat.key_centre = ellipse.key_centre;
+    splat.least_key = ellipse.least_key;
     splat.lines[0] = splat.lines[1] = vec3(1.0, 0.0, 0.0);
     splat.concave = 0.0;
     if (CLIPS && ellipse.clip != NO_CLIP) {
@@ -148,6 +150,7 @@ TileSplat shuffle(TileSplat s, uint from) {
     result.kernel = shuffle(s.kernel, from);
     result.plane = shuffle(s.plane, from);
     if (on_plane()) result.key_centre = shuffle(s.key_centre, from);
+    if (CURVATURES) result.least_key = shuffle(s.least_key, from);
     if (CLIPS) {
         result.lines[0] = shuffle(s.lines[0], from);
         result.lines[1] = shuffle(s.lines[1], from);
@@ -172,6 +175,7 @@ bool tile_fragment(TileSplat splat, vec2 d, out vec2 m, out float key, out float
         rim() > 1.0 ? max(abs(m.x), abs(m.y)) <= frame.cutoff : dot(m, m) <= frame.cutoff * frame.cutoff;
     rank = 1.0;
     if (CLIPS) rank = clip_rank(clip_distance(splat, d));
+    if (CURVATURES) inside = inside && key >= splat.least_key;
     return inside && rank > 0.0 && key > frame.key_far && key <= 1.0;
 }
 

@@ -45,8 +45,38 @@ uint kept_columns(float value, float slope) {
     return slope > 0.0 ? column_mask(x, float(TILE)) : column_mask(0.0, x);
 }
 
+// The line beyond which a convex surface has turned away from the eye, on the tile: at column `start` + `slope` y. `side` is above 0 if the
+// columns beyond are kept.
+struct Turn {
+    float start;
+    float slope;
+    float side;
+};
+
+const Turn NO_TURN = Turn(1e9, 0.0, -1.0);
+// Least slope along a row relative to that of the plane: nearly horizontal lines are that much off.
+const float LEAST_SLOPE = 1e-6;
+
+Turn turn_on_tile(TileSplat solid, float least_key) {
+    vec3 plane = solid.plane.grid + solid.plane.rest;
+    float value = solid.plane.grid.x - least_key + solid.plane.rest.x;
+    float least = max(LEAST_SLOPE * length(plane.yz), 1e-30);
+    float slope = abs(plane.y) < least ? least : plane.y;
+    return least_key > 0.0 ? Turn(-value / slope, -plane.z / slope, slope) : NO_TURN;
+}
+
+Turn shuffle(Turn o, uint from) {
+    return Turn(shuffle(o.start, from), shuffle(o.slope, from), shuffle(o.side, from));
+}
+
+// Mask of the columns whose sample `d`, in column 0, is not beyond the turn line.
+uint unturned_columns(Turn turn, vec2 d) {
+    float x = turn.start + turn.slope * d.y - d.x;
+    return turn.side > 0.0 ? column_mask(x, float(TILE)) : column_mask(0.0, x);
+}
+
 // Mask of the columns whose pixels have their sample inside a solid ellipse; `d` is the sample in column 0, relative to the tile.
-uint sample_columns(TileSplat solid, vec2 d) {
+uint sample_columns(TileSplat solid, Turn turn, vec2 d) {
     float limit = SOLID * frame.cutoff;
     uint mask = 0;
     if (on_plane()) {
@@ -70,6 +100,7 @@ uint sample_columns(TileSplat solid, vec2 d) {
             mask = discriminant >= 0.0 ? column_mask(middle - reach, middle + reach) : 0u;
         }
     }
+    if (CURVATURES) mask &= unturned_columns(turn, d);
     if (CLIPS) {
         uint kept[2];
         for (uint i = 0; i < 2; i++) {
@@ -82,11 +113,11 @@ uint sample_columns(TileSplat solid, vec2 d) {
 }
 
 // Adds the samples of a word that a splat covers at the columns of its `fragments`; returns the columns of which it covers samples.
-uint add_samples(TileSplat solid, float y, uint fragments, const uint word) {
+uint add_samples(TileSplat solid, Turn turn, float y, uint fragments, const uint word) {
     uint any = 0, added = 0;
     for (uint j = 0; j < LANE_SAMPLES - 4 * word && j < 4; j++) {
         uint k = lane / TILE * LANE_SAMPLES + 4 * word + j;
-        uint columns = sample_columns(solid, vec2(0.0, y) + sample_position(k));
+        uint columns = sample_columns(solid, turn, vec2(0.0, y) + sample_position(k));
         any |= columns;
         added |= (columns & fragments) << 8 * j;
     }
@@ -94,9 +125,9 @@ uint add_samples(TileSplat solid, float y, uint fragments, const uint word) {
     return any;
 }
 
-// Adds the samples that a splat covers, if `is_splat`: see coverage_mask. `solid` is its solid ellipse, `offset` its centre relative to the
-// tile, px, `nearest` the sample nearest to it.
-void add_coverage(TileSplat splat, TileSplat solid, vec2 offset, uint nearest, bool is_splat) {
+// Adds the samples that a splat covers, if `is_splat`: see coverage_mask. `solid` is its solid ellipse, `turn` its turn line, `offset` its centre
+// relative to the tile, px, `nearest` the sample nearest to it.
+void add_coverage(TileSplat splat, TileSplat solid, Turn turn, vec2 offset, uint nearest, bool is_splat) {
     float y = float(lane % TILE);
     uint first = lane / TILE * LANE_SAMPLES;
     uint fragments = 0;
@@ -107,10 +138,10 @@ void add_coverage(TileSplat splat, TileSplat solid, vec2 offset, uint nearest, b
     }
     fragments = is_splat ? fragments : 0;
     // One by one: the compiler does not unroll a loop of that many instructions, and dynamic indexing is slow.
-    uint any = add_samples(solid, y, fragments, 0);
-    if (SAMPLE_WORDS > 1) any |= add_samples(solid, y, fragments, 1);
-    if (SAMPLE_WORDS > 2) any |= add_samples(solid, y, fragments, 2);
-    if (SAMPLE_WORDS > 3) any |= add_samples(solid, y, fragments, 3);
+    uint any = add_samples(solid, turn, y, fragments, 0);
+    if (SAMPLE_WORDS > 1) any |= add_samples(solid, turn, y, fragments, 1);
+    if (SAMPLE_WORDS > 2) any |= add_samples(solid, turn, y, fragments, 2);
+    if (SAMPLE_WORDS > 3) any |= add_samples(solid, turn, y, fragments, 3);
     for (uint k = 3; k < STEPS; k++) any |= shuffle(any, lane ^ 1u << k);
     // A splat covers at least one sample of the pixel that contains its centre.
     uint centre = abs(y - offset.y) <= 0.5 ? column_mask(offset.x - 0.5, offset.x + 0.5) : 0;
@@ -121,21 +152,26 @@ void add_coverage(TileSplat splat, TileSplat solid, vec2 offset, uint nearest, b
     }
 }
 
+// Adds the samples of the splat that lane `from` has.
+void add_coverage_of(
+    uint from, TileSplat splat, TileSplat solid, Turn turn, vec2 offset, uint nearest, bool is_splat) {
+    Turn current = CURVATURES ? shuffle(turn, from) : NO_TURN;
+    add_coverage(shuffle(splat, from), shuffle(solid, from), current, shuffle(offset, from), shuffle(nearest, from), is_splat);
+}
+
 void add_coverage_batch(uint count, uint id, uvec2 origin) {
     Splat splat = splat_of(id);
     vec2 centre = vec2(origin) + 0.5, variance = variance_of(splat);
     TileSplat lane_splat = splat_on_tile(ellipse_of(splat, visibility_variance(variance), clip_of(id)), centre);
     TileSplat lane_solid = splat_on_tile(solid_ellipse(splat, clip_of(id)), centre);
+    Turn lane_turn = CURVATURES ? turn_on_tile(lane_solid, least_key(splat)) : NO_TURN;
     vec2 lane_offset = splat.offset - (centre - anchor_of(splat));
     uint lane_nearest = nearest_sample(lane_offset - ceil(lane_offset - 0.5));
     uint s = 0;
     do {
-        TileSplat current = shuffle(lane_splat, s), solid = shuffle(lane_solid, s);
-        add_coverage(current, solid, shuffle(lane_offset, s), shuffle(lane_nearest, s), s < count);
+        add_coverage_of(s, lane_splat, lane_solid, lane_turn, lane_offset, lane_nearest, s < count);
 #if COVERAGE_UNROLLED == 2
-        current = shuffle(lane_splat, s + 1);
-        solid = shuffle(lane_solid, s + 1);
-        add_coverage(current, solid, shuffle(lane_offset, s + 1), shuffle(lane_nearest, s + 1), s + 1 < count);
+        add_coverage_of(s + 1, lane_splat, lane_solid, lane_turn, lane_offset, lane_nearest, s + 1 < count);
 #endif
         s += COVERAGE_UNROLLED;
     } while (s < count);

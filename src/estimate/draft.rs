@@ -26,6 +26,7 @@ impl Draft {
                 None => cloud.radii.unwrap_or_else(|| vec![0.0; count]),
             },
             ellipses: cloud.ellipses,
+            curvatures: cloud.curvatures,
             two_sided: cloud.two_sided,
             clips: cloud.clips,
             weights: cloud.weights,

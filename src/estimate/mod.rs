@@ -1,7 +1,9 @@
 //! Estimation: from a point cloud to surfels.
 
+mod boundary;
 mod cell;
 mod creases;
+mod curvature;
 mod draft;
 mod eigen;
 mod faces;
@@ -24,6 +26,7 @@ use crate::Progress;
 use crate::error::{Error, Result};
 use crate::geometry::{Cloud, Surfels};
 use draft::Draft;
+use sites::Sites;
 use std::f32::consts::PI;
 use std::ops::Add;
 
@@ -41,6 +44,8 @@ pub struct Estimate {
     pub radius_scale: f32,
     /// Whether discs with an estimated radius are ellipses, longer where points are sparser.
     pub elliptical: bool,
+    /// Whether curvatures are estimated, too: [`Surfels::curvatures`].
+    pub curvatures: bool,
     /// Removes points whose mean distance from their neighbours is more than this number of standard deviations above the average.
     pub outliers: Option<f32>,
     /// Clips discs at creases where normals turn by more than this angle, radians.
@@ -56,6 +61,7 @@ impl Default for Estimate {
             radius: None,
             radius_scale: 1.0,
             elliptical: false,
+            curvatures: true,
             outliers: None,
             sharp: None,
             line_radius: None,
@@ -115,6 +121,8 @@ pub struct Estimated {
     pub outliers: u64,
     /// Surfels clipped at detected creases.
     pub clipped: u64,
+    /// Surfels clipped at the boundaries of open meshes.
+    pub bounded: u64,
     /// Radii of line vertices from the file, or from [`Estimate::line_radius`].
     pub line_radii_given: u64,
     /// Radii of line vertices from the nearest vertex along the line.
@@ -137,6 +145,7 @@ impl Add for Estimated {
             radii_from_neighbours: self.radii_from_neighbours + other.radii_from_neighbours,
             outliers: self.outliers + other.outliers,
             clipped: self.clipped + other.clipped,
+            bounded: self.bounded + other.bounded,
             line_radii_given: self.line_radii_given + other.line_radii_given,
             line_radii_from_lines: self.line_radii_from_lines + other.line_radii_from_lines,
             line_radii_from_extent: self.line_radii_from_extent + other.line_radii_from_extent,
@@ -170,10 +179,27 @@ impl Cloud {
         progress.check_cancelled()?;
         faces::fill(&mut draft, how);
         progress.check_cancelled()?;
-        if draft.lacks_anything() {
-            neighbours::fill(&mut draft, view, how, progress)?;
+        let lacks_anything = draft.lacks_anything();
+        let sites = (lacks_anything || how.curvatures)
+            .then(|| Sites::new(&draft.surfels.positions, progress))
+            .transpose()?;
+        if let Some(sites) = sites.as_ref().filter(|_| lacks_anything) {
+            neighbours::fill(&mut draft, sites, view, how, progress)?;
         }
+        let triangles = std::mem::take(&mut draft.triangles);
         let (mut surfels, mut estimated) = draft.finish(how)?;
+        if !triangles.is_empty() {
+            estimated.bounded = match &sites {
+                Some(sites) => boundary::clip(&mut surfels, &triangles, sites),
+                None => {
+                    let sites = Sites::new(&surfels.positions, progress)?;
+                    boundary::clip(&mut surfels, &triangles, &sites)
+                }
+            };
+        }
+        if let Some(sites) = sites.filter(|_| how.curvatures) {
+            surfels.curvatures = Some(curvature::curvatures(&surfels, &sites, progress)?);
+        }
         if let Some(angle) = how.sharp {
             estimated.clipped = creases::clip(&mut surfels, angle, how, progress)?;
         }
@@ -206,6 +232,7 @@ mod tests {
             radii_from_neighbours: 7,
             outliers: 8,
             clipped: 9,
+            bounded: 13,
             line_radii_given: 10,
             line_radii_from_lines: 11,
             line_radii_from_extent: 12,
@@ -220,6 +247,7 @@ mod tests {
             radii_from_neighbours: 14,
             outliers: 16,
             clipped: 18,
+            bounded: 26,
             line_radii_given: 20,
             line_radii_from_lines: 22,
             line_radii_from_extent: 24,

@@ -22,18 +22,23 @@ const LARGEST_OVERALL: f32 = 2.0;
 /// Number of sites per task.
 const PIECE: usize = 1 << 12;
 
-/// Estimates missing normals and radii from the nearest points. Surfels are best in Morton order.
-pub(super) fn fill(draft: &mut Draft, view: View, how: &Estimate, progress: &dyn Progress) -> Result<()> {
+/// Estimates missing normals and radii from the nearest points; `sites` are those of the surfels. Surfels are best in Morton order.
+pub(super) fn fill(
+    draft: &mut Draft,
+    sites: &Sites,
+    view: View,
+    how: &Estimate,
+    progress: &dyn Progress,
+) -> Result<()> {
     let surfels = &draft.surfels;
-    let sites = Sites::new(&surfels.positions, progress)?;
-    let survey = Survey::new(&sites, wanted(surfels, &sites), how, progress)?;
-    let (normals, unknown) = normals(surfels, &sites, &survey, view, progress);
+    let survey = Survey::new(sites, wanted(surfels, sites), how, progress)?;
+    let (normals, unknown) = normals(surfels, sites, &survey, view, progress);
     progress.check_cancelled()?;
-    let radii = radii(surfels, &sites, &survey);
+    let radii = radii(surfels, sites, &survey);
     let is_estimated: Vec<bool> = surfels.radii.iter().map(|radius| *radius == 0.0).collect();
-    put(draft, &sites, &normals, &unknown, &radii);
+    put(draft, sites, &normals, &unknown, &radii);
     if how.elliptical {
-        stretch(&mut draft.surfels, &sites, &survey, &is_estimated);
+        stretch(&mut draft.surfels, sites, &survey, &is_estimated);
     }
     Ok(())
 }

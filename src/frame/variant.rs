@@ -71,6 +71,8 @@ pub struct Variant {
     pub sliced: bool,
     /// Tile path: some discs have clip lines.
     pub clips: bool,
+    /// Discs of convex surfaces cover samples down to a depth only: some scene has curvatures, and α is the coverage of discs in tangent planes.
+    pub curvatures: bool,
     /// Tile path: some scene's surfels are in arbitrary order.
     pub unordered: bool,
     /// Compute path: some scene has bounds of its clusters of surfels, which are culled.
@@ -112,6 +114,8 @@ pub struct SceneVariant {
     pub frame: Variant,
     /// Surfels are ellipses.
     pub ellipses: bool,
+    /// Normals are followed by curvatures, which the frame uses.
+    pub curvatures: bool,
     /// Some discs have clip lines.
     pub clips: bool,
     /// Some surfels are two-sided, so never culled as back faces.
@@ -215,6 +219,11 @@ impl Variant {
                 || tiled && splatting.visibility == Visibility::Axis,
             sliced: false,
             clips: tiled && streams.iter().any(|streams| streams.clips),
+            curvatures: settings.pull_push.is_none()
+                && settings.alpha == Alpha::Coverage
+                && splatting.footprint.is_in_tangent_plane()
+                && splatting.kernel == Kernel::Gaussian
+                && streams.iter().any(|streams| streams.curvatures),
             unordered: tiled && streams.iter().any(|streams| streams.unordered),
             clusters: rasterizer == Rasterizer::Compute && streams.iter().any(|streams| streams.clusters),
             corners: tiled && weights && streams.iter().any(|streams| streams.weights == Some(true)),
@@ -331,6 +340,7 @@ impl Variant {
             .with(constant::OUT_DEPTH, self.outputs.depth)
             .with(constant::CLIPS, self.clips)
             .with(constant::BEYOND_CLIPS, self.coverage && self.clips)
+            .with(constant::CURVATURES, self.curvatures)
             .with(constant::SLICED, self.sliced)
             .with(constant::CLUSTERS, self.clusters)
             .with(constant::FRAME_WEIGHTS, self.weights)
@@ -353,6 +363,7 @@ impl SceneVariant {
             },
             frame,
             ellipses: streams.ellipses,
+            curvatures: streams.curvatures && frame.curvatures,
             clips: streams.clips,
             two_sided: streams.two_sided,
             weights: weights.is_some(),
@@ -417,6 +428,7 @@ impl SceneVariant {
             .with(constant::STORED_COLOURS, self.unchecked.map_or(0, |colours| colours as u32))
             .with(constant::ELLIPSES, self.ellipses)
             .with(constant::TWO_SIDED, self.two_sided)
+            .with(constant::CURVATURES, self.curvatures)
             .with(constant::CLIPS, self.clips)
             .with(constant::BEYOND_CLIPS, self.frame.coverage && self.clips)
             .with(constant::WEIGHTS, self.weights)

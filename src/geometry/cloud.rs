@@ -17,6 +17,8 @@ pub struct Cloud {
     pub radii: Option<Vec<f32>>,
     /// Shapes of elliptical discs; need radii and normals.
     pub ellipses: Option<Vec<Ellipse>>,
+    /// Curvatures: see [`Surfels::curvatures`](super::Surfels::curvatures); need normals.
+    pub curvatures: Option<Vec<f32>>,
     /// Points whose normals have no known side.
     pub two_sided: Option<Vec<bool>>,
     /// Clips of discs at sharp edges; need normals.
@@ -61,11 +63,20 @@ impl Cloud {
         self.positions.len()
     }
 
-    /// The points [`spread`](Self::spread). Radii, ellipses, clips, weights, triangles and lines are dropped, because they belong to the denser
-    /// points: larger discs reach other edges.
+    /// The points [`spread`](Self::spread). Radii, ellipses, curvatures, clips, weights, triangles and lines are dropped, because they belong
+    /// to the denser points: larger discs reach other edges.
     pub fn some(&self, count: usize) -> Self {
         let kept = self.spread(count);
-        Self { radii: None, ellipses: None, clips: None, weights: None, tangents: None, ..self.points(&kept) }
+        let points = self.points(&kept);
+        Self {
+            radii: None,
+            ellipses: None,
+            curvatures: None,
+            clips: None,
+            weights: None,
+            tangents: None,
+            ..points
+        }
     }
 
     /// Indices of `count` points, evenly spread along the Z-curve of the bounds and in its order; all points if there are no more.
@@ -114,6 +125,7 @@ impl Cloud {
             normals: of(&self.normals, kept),
             radii: of(&self.radii, kept),
             ellipses: of(&self.ellipses, kept),
+            curvatures: of(&self.curvatures, kept),
             two_sided: of(&self.two_sided, kept),
             clips: self.clips.clone().map(|mut clips| {
                 clips.permute(kept);
@@ -161,6 +173,7 @@ impl From<Surfels> for Cloud {
             normals: Some(surfels.normals),
             radii: Some(surfels.radii),
             ellipses: surfels.ellipses,
+            curvatures: surfels.curvatures,
             two_sided: surfels.two_sided,
             clips: surfels.clips,
             weights: surfels.weights,

@@ -124,6 +124,7 @@ impl Surfels {
             }),
             texture: self.texture.as_ref().map(|texture| texture.gather(&nearest)),
             materials: self.materials.as_ref().map(|materials| materials.gather(&nearest)),
+            curvatures: None,
             clips: None,
             weights: None,
         }

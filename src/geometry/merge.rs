@@ -13,7 +13,7 @@ impl Surfels {
     ///
     /// If the origins agree, origin and positions are kept; otherwise the origin is the middle of the common bounds, and positions are
     /// translated in float64. Attributes that only some parts have: surfels without colours get `albedo` (linear), and colours stay
-    /// sRGB-encoded unless a part has linear ones; discs without shapes are circles; surfels without sides are one-sided; discs without
+    /// sRGB-encoded unless a part has linear ones; discs without shapes are circles; those without curvatures have unknown ones; surfels without sides are one-sided; discs without
     /// clips are whole; parts with different textures get their colours at the points; points without materials have none. Normalization
     /// weights are dropped unless all parts have them, because no value would fit the others.
     ///
@@ -31,6 +31,7 @@ impl Surfels {
             normals: cloud.normals.unwrap_or_default(),
             radii: cloud.radii.unwrap_or_default(),
             ellipses: cloud.ellipses,
+            curvatures: cloud.curvatures,
             two_sided: cloud.two_sided,
             clips: cloud.clips,
             weights: cloud.weights,
@@ -139,6 +140,7 @@ impl Cloud {
             colours: join_colours(parts, albedo),
             // Before the normals, which circles are made of.
             ellipses: join(parts, |part| part.ellipses.take(), circles),
+            curvatures: join(parts, |part| part.curvatures.take(), |part| vec![0.0; part.len()]),
             clips: join_clips(parts),
             weights: Weights::join(parts.iter_mut().map(|part| part.weights.take())),
             two_sided: join(parts, |part| part.two_sided.take(), |part| vec![false; part.len()]),

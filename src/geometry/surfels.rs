@@ -21,6 +21,9 @@ pub struct Surfels {
     pub radii: Vec<f32>,
     /// Shapes of the discs; `None` if all are circles.
     pub ellipses: Option<Vec<Ellipse>>,
+    /// Largest normal curvatures of the surface at the centres, 1 / the positions' unit, above 0 where it bends away from the normal; 0 of
+    /// unknown ones, `None` if all are unknown. With coverage, discs end where a convex surface turns away from the eye.
+    pub curvatures: Option<Vec<f32>>,
     /// Surfels that are two-sided, so that neither side is the back; `None` if there are none.
     pub two_sided: Option<Vec<bool>>,
     /// Clip lines of discs at sharp edges; `None` if all are whole.
@@ -85,6 +88,7 @@ impl Surfels {
             ("normals", self.normals.len()),
             ("radii", self.radii.len()),
             ("ellipses", self.ellipses.as_ref().map_or(count, Vec::len)),
+            ("curvatures", self.curvatures.as_ref().map_or(count, Vec::len)),
             ("sides", self.two_sided.as_ref().map_or(count, Vec::len)),
             ("clips", self.clips.as_ref().map_or(count, |clips| clips.of.len())),
             ("weights", self.weights.as_ref().map_or(count, |weights| weights.of.len())),
@@ -112,6 +116,7 @@ impl Surfels {
         gather(&mut self.normals, order);
         gather(&mut self.radii, order);
         self.ellipses.iter_mut().for_each(|ellipses| gather(ellipses, order));
+        self.curvatures.iter_mut().for_each(|curvatures| gather(curvatures, order));
         self.two_sided.iter_mut().for_each(|two_sided| gather(two_sided, order));
         self.clips.iter_mut().for_each(|clips| clips.permute(order));
         self.weights.iter_mut().for_each(|weights| weights.permute(order));

@@ -118,6 +118,7 @@ mod tests {
             normals: vec![Vec3::Z; 2],
             radii: vec![0.5; 2],
             ellipses: Some(vec![Ellipse { major: Vec3::X, aspect: 1e-4 }; 2]),
+            curvatures: None,
             two_sided: None,
             clips: Clips::collect([Some(clip()), Some(clip())]),
             weights: Some(Weights::collect([(0.5, None), (0.25, Some([0.1, 0.2, 0.3, 0.4]))])),

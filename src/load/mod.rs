@@ -244,7 +244,8 @@ impl Load<'_> {
         let some = |part: &Part| part.cloud.some((part.cloud.len() * PREVIEW).div_ceil(all));
         let clouds = parts.iter().map(some).collect();
         let cloud = Cloud::merge(clouds, Settings::default().lighting.albedo).ok()?;
-        let how = Estimate { outliers: None, sharp: None, ..self.options.estimate.clone() };
+        let how =
+            Estimate { curvatures: false, outliers: None, sharp: None, ..self.options.estimate.clone() };
         // Estimation may fail for few points and succeed for all: then there is no preview.
         let (mut model, _) = cloud.into_model(false, &how, &()).ok()?;
         let colouring = self.options.colouring.as_ref();
@@ -347,6 +348,7 @@ fn without_estimation(cloud: Cloud) -> Cloud {
         normals: Some(vec![Vec3::Z; count]),
         radii: Some(vec![1.0; count]),
         ellipses: None,
+        curvatures: None,
         clips: None,
         weights: None,
         ..cloud

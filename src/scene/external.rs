@@ -51,6 +51,7 @@ impl Scene {
             positions: external.positions,
             normals: external.normals,
             normal_stream: external.normal_stream,
+            curvatures: false,
             radii: external.radii,
             two_sided: external.two_sided,
             ellipses: external.ellipses,

@@ -27,7 +27,7 @@ use clips::ClipStream;
 pub(crate) use clusters::CLUSTER;
 use clusters::Clusters;
 pub(crate) use external::ExternalBuffers;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec4};
 pub use instance::{Instance, Instances};
 pub(crate) use materials::MaterialStream;
 pub use order::Order;
@@ -49,6 +49,8 @@ pub struct Scene {
     positions: Stream,
     normals: Stream,
     normal_stream: NormalStream,
+    /// Whether a normal is followed by the curvature of the surface.
+    curvatures: bool,
     /// Radii: negative for two-sided surfels, in a scene that has any; 0 for invalid surfels.
     radii: Stream,
     two_sided: bool,
@@ -153,7 +155,14 @@ impl Scene {
         let scene = Self {
             id: next_id(),
             positions: stream("positions", bytemuck::cast_slice(&surfels.positions), VECTOR)?,
-            normals: stream("normals", bytemuck::cast_slice(&surfels.normals), VECTOR)?,
+            normals: match &surfels.curvatures {
+                None => stream("normals", bytemuck::cast_slice(&surfels.normals), VECTOR)?,
+                Some(curvatures) => {
+                    let bent = bent_normals(&surfels.normals, Some(curvatures));
+                    stream("normals", bytemuck::cast_slice(&bent), VECTOR + SCALAR)?
+                }
+            },
+            curvatures: surfels.curvatures.is_some(),
             normal_stream: NormalStream::Float,
             radii: stream("radii", bytemuck::cast_slice(&marked_radii(surfels, invalid)), SCALAR)?,
             two_sided: surfels.two_sided.is_some(),
@@ -244,6 +253,7 @@ impl Scene {
     pub fn streams(&self) -> Streams {
         Streams {
             ellipses: self.ellipses.is_some(),
+            curvatures: self.curvatures,
             two_sided: self.two_sided,
             clips: self.clips.is_some(),
             weights: self.weights.as_ref().map(|weights| weights.corners),
@@ -385,6 +395,12 @@ fn warn_of(invalid: usize, count: usize) {
         "{invalid} of {count} surfels are invalid and will not be drawn: a value is NaN, infinite or beyond {:e}, a normal or an axis is not a unit vector, a radius or an aspect is not above 0, a clip line is not in the tangent plane",
         Surfels::LARGEST
     );
+}
+
+/// Normals, each followed by a curvature, or by 0, an unknown one.
+fn bent_normals(normals: &[Vec3], curvatures: Option<&[f32]>) -> Vec<Vec4> {
+    let curvature = |i: usize| curvatures.map_or(0.0, |curvatures| curvatures[i]);
+    normals.iter().enumerate().map(|(i, normal)| normal.extend(curvature(i))).collect()
 }
 
 /// Radii: negative for two-sided surfels, and 0 for invalid ones.

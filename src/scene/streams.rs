@@ -8,6 +8,8 @@ use super::{ELLIPSE, SCALAR, SurfelLayout, VECTOR};
 pub struct Streams {
     /// Discs are ellipses.
     pub ellipses: bool,
+    /// Normals are followed by the curvature of the surface.
+    pub curvatures: bool,
     /// Some surfels are two-sided.
     pub two_sided: bool,
     /// Some discs have clip lines.
@@ -37,6 +39,7 @@ impl Streams {
     pub fn circles(colours: ColourStream) -> Self {
         Self {
             ellipses: false,
+            curvatures: false,
             two_sided: false,
             clips: false,
             weights: None,
@@ -51,7 +54,7 @@ impl Streams {
         }
     }
 
-    /// Streams of uploaded surfels by name, with bytes per surfel. A clip takes 32 more, corner weights 16.
+    /// Streams of uploaded surfels by name, with bytes per surfel; those of normals include the curvature. A clip takes 32 more, corner weights 16.
     pub fn per_surfel(&self) -> Vec<(&'static str, u64)> {
         let optional = [
             ("colours", self.colours.bytes()),
@@ -59,7 +62,8 @@ impl Streams {
             ("clips", if self.clips { 4 } else { 0 }),
             ("weights", if self.weights.is_some() { SCALAR } else { 0 }),
         ];
-        let given = [("positions", VECTOR), ("normals", VECTOR), ("radii", SCALAR)].into_iter();
+        let curvature = if self.curvatures { SCALAR } else { 0 };
+        let given = [("positions", VECTOR), ("normals", VECTOR + curvature), ("radii", SCALAR)].into_iter();
         given.chain(optional.into_iter().filter(|(_, bytes)| *bytes > 0)).collect()
     }
 }

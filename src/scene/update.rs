@@ -1,7 +1,7 @@
 //! Updates of surfels on the GPU.
 
 use super::live::check_bounds;
-use super::{ColourStream, Scene, Stream, largest};
+use super::{ColourStream, Scene, Stream, bent_normals, largest};
 use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Colours, Ellipse, Surfels, is_unit};
 use crate::vk::Uploads;
@@ -18,6 +18,8 @@ pub struct Changes<'a> {
     pub positions: Option<&'a [Vec3]>,
     /// Unit normals.
     pub normals: Option<&'a [Vec3]>,
+    /// Curvatures, together with `normals`, in a scene that has curvatures. New normals without curvatures have unknown ones.
+    pub curvatures: Option<&'a [f32]>,
     /// Radii.
     pub radii: Option<&'a [f32]>,
     /// Which radii are of two-sided surfels, together with `radii`, in a scene that has two-sided surfels.
@@ -67,7 +69,12 @@ impl Scene {
             clusters.change(uploads, range, changes, self.capacity())?;
         }
         write(uploads, Some(&self.positions), first, changes.positions)?;
-        write(uploads, Some(&self.normals), first, changes.normals)?;
+        if self.curvatures {
+            let bent = changes.normals.map(|normals| bent_normals(normals, changes.curvatures));
+            write(uploads, Some(&self.normals), first, bent.as_deref())?;
+        } else {
+            write(uploads, Some(&self.normals), first, changes.normals)?;
+        }
         let radii = changes.radii.map(|radii| marked(radii, changes.two_sided));
         write(uploads, Some(&self.radii), first, radii.as_deref())?;
         write(uploads, self.ellipses.as_ref(), first, changes.ellipses)?;
@@ -94,6 +101,8 @@ impl Scene {
             return refuse(&format!("the scene has room for {}", self.capacity()));
         } else if changes.ellipses.is_some() && self.ellipses.is_none() {
             return refuse("the scene has circles: upload it with ellipses");
+        } else if changes.curvatures.is_some() && (!self.curvatures || changes.normals.is_none()) {
+            return refuse("curvatures need normals, and a scene that was uploaded with curvatures");
         } else if changes.two_sided.is_some() && (!self.two_sided || changes.radii.is_none()) {
             return refuse("two_sided needs radii, and a scene that was uploaded with two-sided surfels");
         } else if self.two_sided && changes.radii.is_some() && changes.two_sided.is_none() {
@@ -137,6 +146,7 @@ impl Changes<'_> {
         let lengths = [
             self.positions.map(<[_]>::len),
             self.normals.map(<[_]>::len),
+            self.curvatures.map(<[_]>::len),
             self.radii.map(<[_]>::len),
             self.two_sided.map(<[_]>::len),
             self.ellipses.map(<[_]>::len),
@@ -148,7 +158,7 @@ impl Changes<'_> {
             Ok(first as u64)
         } else {
             Err(Error::Usage(format!(
-                "arrays of positions, normals, radii, two_sided, ellipses, colours have unequal lengths {lengths:?}: give one entry per surfel"
+                "arrays of positions, normals, curvatures, radii, two_sided, ellipses, colours have unequal lengths {lengths:?}: give one entry per surfel"
             )))
         }
     }

@@ -190,6 +190,11 @@ impl Footprint {
         matches!(self, Self::Parallelogram | Self::Disc)
     }
 
+    /// Whether its depth is that of the tangent plane.
+    pub fn is_in_tangent_plane(self) -> bool {
+        !self.is_sprite() && self != Self::Square
+    }
+
     /// Whether it is an elliptical sprite.
     pub fn is_sprite(self) -> bool {
         matches!(self, Self::Sprite | Self::WholeSprite | Self::FlatSprite)

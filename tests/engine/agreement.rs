@@ -213,10 +213,18 @@ fn with_axes(settings: impl Fn(&Case) -> Settings) -> Vec<Case> {
     let mut cases = cases();
     for case in &mut cases {
         case.settings = settings(case);
+        let covers = case.settings.alpha == Alpha::Coverage;
+        case.surfels.curvatures = covers.then(|| curvatures(&case.surfels.radii));
         let by_surfel = case.settings.splatting.normalization == Normalization::Surfel;
         case.surfels.weights = by_surfel.then(|| weights(case.surfels.len()));
     }
     cases
+}
+
+/// Random curvatures, some below 0, of surfaces that turn away within a few radii.
+fn curvatures(radii: &[f32]) -> Vec<f32> {
+    let mut random = Random(77);
+    radii.iter().map(|radius| (1.2 * random.unit() - 0.2) as f32 / radius).collect()
 }
 
 /// Random normalization weights; every third surfel has one per corner.

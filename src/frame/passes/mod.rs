@@ -107,6 +107,7 @@ mod tests {
         for rich in [false, true] {
             let streams = Streams {
                 ellipses: rich,
+                curvatures: rich,
                 two_sided: rich,
                 clips: rich,
                 weights: rich.then_some(true),

@@ -1,6 +1,6 @@
 //! Bands of rows: the unit of parallel work. Each band lists the splats that reach it.
 
-use super::ellipse::Ellipse;
+use super::ellipse::{Ellipse, HALF_PIXEL};
 use super::projected_scene::ProjectedScene;
 use super::rank::Rank;
 use super::{Projector, Splat};
@@ -50,6 +50,8 @@ pub(super) struct Hit {
     pub rim: f64,
     /// Signed distance to the part that clip lines remove, px; below 0 in that part.
     pub clip_distance: f64,
+    /// Signed distance to the part beyond the turn line, px; below 0 in that part.
+    pub turn_distance: f64,
 }
 
 impl Hit {
@@ -133,13 +135,13 @@ impl<'a> Band<'a> {
     /// Calls `visit` for every pixel centre at which the splat has a fragment.
     pub fn inside(&self, ellipse: &Ellipse, mut visit: impl FnMut(Hit)) {
         self.scan(ellipse, ellipse.cutoff, |hit| {
-            if hit.clip_distance >= -ellipse.clip_reach {
+            if hit.clip_distance >= -ellipse.clip_reach && hit.turn_distance >= -HALF_PIXEL {
                 visit(hit);
             }
         });
     }
 
-    /// Calls `visit` for every pixel centre within the outline of `ellipse` at `reach` σ, on either side of clip lines.
+    /// Calls `visit` for every pixel centre within the outline of `ellipse` at `reach` σ, on either side of clip lines and of the turn line.
     pub fn scan(&self, ellipse: &Ellipse, reach: f64, mut visit: impl FnMut(Hit)) {
         for row in 0..self.rows {
             let y = f64::from(self.first_row + row) + 0.5;
@@ -153,7 +155,6 @@ impl<'a> Band<'a> {
                 if rim <= reach {
                     let (index, in_kernel) =
                         ((row * self.width + column) as usize, ellipse.in_kernel(offset));
-                    let clip_distance = ellipse.clip_distance(at);
                     visit(Hit {
                         index,
                         at,
@@ -161,7 +162,8 @@ impl<'a> Band<'a> {
                         in_kernel,
                         sigmas: in_kernel.length(),
                         rim,
-                        clip_distance,
+                        clip_distance: ellipse.clip_distance(at),
+                        turn_distance: ellipse.turn_distance(at),
                     });
                 }
             }

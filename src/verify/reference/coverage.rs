@@ -39,9 +39,17 @@ fn solid(splat: &Splat, projector: &Projector) -> Ellipse {
     Ellipse { cutoff, ..Ellipse::new(splat, projector, |variance| variance.max(LEAST)) }
 }
 
+/// Signed distances, px, of a position relative to the centre to the parts beyond clip lines and beyond the turn line.
+fn distances(solid: &Ellipse, at: DVec2) -> [f64; 2] {
+    let position = solid.centre + at;
+    [solid.clip_distance(position) + SEAM, solid.turn_distance(position)]
+}
+
 /// The samples that a splat covers in the pixel whose centre is at `offset` from the splat's centre.
 fn mask(solid: &Ellipse, offset: DVec2) -> Mask {
-    let inside = |at: DVec2| solid.rim(at) <= solid.cutoff && solid.clip_distance(solid.centre + at) >= -SEAM;
+    let inside = |at: DVec2| {
+        solid.rim(at) <= solid.cutoff && distances(solid, at).iter().all(|distance| *distance >= 0.0)
+    };
     let mask = bits((0..Mask::BITS).filter(|&k| inside(offset + sample(k))));
     // A pixel that contains the splat's centre is covered by at least one sample.
     let owns = mask == 0 && offset.abs().max_element() <= 0.5;
@@ -66,7 +74,8 @@ fn certain_and_possible(solid: &Ellipse, offset: DVec2) -> [Mask; 2] {
     let inside = |at: DVec2, margin: f64| {
         let undecided = solid.is_undecided(at, margin.abs());
         let within = if undecided { margin > 0.0 } else { solid.rim(at) <= solid.cutoff };
-        within && solid.clip_distance(solid.centre + at) + margin >= -SEAM
+        let [clip, turn] = distances(solid, at);
+        within && clip + margin >= 0.0 && turn + margin + margin.signum() * solid.turn_error >= 0.0
     };
     let [mut certain, mut possible] = [-tolerance, tolerance]
         .map(|margin| bits((0..Mask::BITS).filter(|&k| inside(offset + sample(k), margin))));

@@ -14,11 +14,11 @@ const MOST_STRETCH: f64 = 2.0;
 /// Least relative difference of a parallelogram's variances; below it, its sides are parallel to the picture's.
 const LEAST_ANISOTROPY: f64 = 1e-4;
 
-/// Float32 rounding error of a difference of two variances, relative to the larger: four half units in the last place.
+/// Float32 rounding error of a difference of two variances, relative to the larger, and of a depth: four half units in the last place.
 const ROUNDING: f64 = 4.0 / (1 << 24) as f64;
 
 /// Half the side of a pixel, px.
-const HALF_PIXEL: f64 = 0.5;
+pub(super) const HALF_PIXEL: f64 = 0.5;
 
 /// Least exponent of a Confetti kernel.
 const LEAST_EXPONENT: f64 = -10.0;
@@ -53,6 +53,10 @@ pub(super) struct Ellipse {
     pub square_to_kernel: DMat2,
     /// See [`Projector::clip_reach`].
     pub clip_reach: f64,
+    /// See [`Splat::turn`].
+    pub turn: Option<DVec3>,
+    /// Error of that line by rounding, px.
+    pub turn_error: f64,
 }
 
 impl Ellipse {
@@ -108,6 +112,8 @@ impl Ellipse {
             corners: splat.weights,
             square_to_kernel: square_to_kernel(splat, DVec2::from_angle(angle)),
             clip_reach: projector.clip_reach(),
+            turn: splat.turn,
+            turn_error: splat.turn.map_or(0.0, |_| turn_error(splat)),
         }
     }
 
@@ -140,6 +146,11 @@ impl Ellipse {
     /// Signed distance of a pixel position to the clipped part, px: below 0 where clip lines remove the splat.
     pub fn clip_distance(&self, at: DVec2) -> f64 {
         self.clip.map_or(f64::INFINITY, |clip| clip.distance(at))
+    }
+
+    /// Signed distance of a pixel position to the part where the surface has turned away, px: below 0 in that part.
+    pub fn turn_distance(&self, at: DVec2) -> f64 {
+        self.turn.map_or(f64::INFINITY, |line| line.dot(DVec3::new(1.0, at.x, at.y)))
     }
 
     /// Whether the outline is the ellipse itself.
@@ -279,6 +290,12 @@ fn visible_variance(projector: &Projector) -> impl Fn(f64) -> f64 {
     }
 }
 
+/// Error of a splat's turn line by rounding, px: that of the depth of its plane, by the slope of the plane.
+fn turn_error(splat: &Splat) -> f64 {
+    let depth = splat.plane.dot(DVec3::new(1.0, splat.centre.x, splat.centre.y));
+    ROUNDING * (depth / DVec2::new(splat.plane.y, splat.plane.z).length()).abs()
+}
+
 /// Angle by which rounding may turn the sides of a parallelogram with this relative difference of its variances, rad.
 fn axis_error(anisotropy: f64) -> f64 {
     let past = anisotropy - LEAST_ANISOTROPY;
@@ -380,6 +397,8 @@ mod tests {
             corners: [1.0; 4],
             square_to_kernel: DMat2::IDENTITY,
             clip_reach: 0.0,
+            turn: None,
+            turn_error: 0.0,
         };
         for y in [17.0, 20.0, 22.5] {
             let (low, high) = ellipse.span(y, 2.0).unwrap();

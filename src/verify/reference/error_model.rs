@@ -1,7 +1,7 @@
 //! Error model of float32: the splats that may cover a pixel, with error bounds of their depth and weight.
 
 use super::bands::{Band, BandSplats};
-use super::ellipse::Ellipse;
+use super::ellipse::{Ellipse, HALF_PIXEL};
 use super::rank::Rank;
 use super::{Projector, Splat};
 use glam::{DVec2, DVec3};
@@ -103,6 +103,12 @@ impl ErrorModel<'_> {
                     return;
                 }
                 let Some((depth, depth_error, certain)) = self.depth_in_volume(splat, hit.at) else { return };
+                // Fragments exist half a pixel beyond the turn line.
+                let [beyond, unsure] =
+                    [hit.turn_distance + HALF_PIXEL, CUTOFF_TOLERANCE + ellipse.turn_error];
+                if beyond < -unsure {
+                    return;
+                }
                 for side in sides(hit.clip_distance, ellipse.clip_reach) {
                     visit(Candidate {
                         splat,
@@ -115,7 +121,7 @@ impl ErrorModel<'_> {
                             + shift * ellipse.steepness(hit.sigmas),
                         shift_error: shift * hit.sigmas,
                         half_ulps: ellipse.half_ulps(hit.in_kernel),
-                        certain: splat.certain && certain && !near_rim && !side.near,
+                        certain: splat.certain && certain && !near_rim && !side.near && beyond > unsure,
                         clipped: side.clipped,
                         or_clipped: side.or_clipped,
                     });

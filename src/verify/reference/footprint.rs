@@ -7,8 +7,8 @@ use super::image::Disc;
 use super::shading::{Shine, linear, lit};
 use crate::error::Result;
 use crate::geometry::{Camera, Clip, ClipLine, Colours, Surfels, square_axis};
-use crate::settings::splatting::{Normalization, Shade};
-use crate::settings::{Cull, Settings, Shading};
+use crate::settings::splatting::{Kernel, Normalization, Shade};
+use crate::settings::{Alpha, Cull, Settings, Shading};
 use glam::{DMat2, DMat3, DVec2, DVec3};
 
 /// One surfel in float64, in world space.
@@ -24,6 +24,8 @@ pub struct Surfel {
     pub major: DVec3,
     /// The shorter semi-axis divided by the longer: 1 for a circle.
     pub aspect: f64,
+    /// Larger principal curvature of the surface, above 0 where it bends away from the normal; 0 if unknown.
+    pub curvature: f64,
     /// Whether both sides are fronts.
     pub two_sided: bool,
     /// Normalization weights at the corners −u −v, +u −v, −u +v, +u +v of the square around the disc, with u = `major`
@@ -56,6 +58,7 @@ impl Surfel {
             major: square_axis(surfels.normals[index], ellipse.map(|ellipse| ellipse.major)),
             aspect: ellipse.map_or(1.0, |ellipse| ellipse.aspect.into()),
             weights: weights.map(f64::from),
+            curvature: surfels.curvatures.as_ref().map_or(0.0, |curvatures| curvatures[index].into()),
             two_sided: surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[index]),
             colour,
             clip: surfels.clips.as_ref().and_then(|clips| clips.get(index)).copied(),
@@ -99,6 +102,10 @@ pub struct Splat {
     pub dual: bool,
     /// Clip lines on the screen, if the surfel has any.
     pub clip: Option<ScreenClip>,
+    /// Turn line: signed distance, px, to the line beyond which a convex surface has turned away from the eye, at pixel
+    /// position (x, y): `turn · (1, x, y)`, above 0 on the kept side. Samples beyond it are not covered, and fragments end
+    /// half a pixel beyond it. `None` where the surface does not turn away.
+    pub turn: Option<DVec3>,
     /// Whether its surfel faces away and is not two-sided.
     pub back: bool,
     /// Whether rounding does not decide if [`Cull::Auto`] drops it.
@@ -131,6 +138,10 @@ const LEAST_CLEARANCE: f64 = 1e-3;
 const LEAST_AREA: f64 = 1e-30;
 /// Largest variance along the major axis of a drawn splat, px²: float32 overflows beyond.
 const LARGEST_VARIANCE: f64 = 1e30;
+
+/// Depth of the turn line, in radii of curvature times the cosine of the angle between normal and viewing ray. At grazing
+/// angles the tangent plane of a sphere leaves its outline at twice that depth.
+const TURN_DEPTH: f64 = 0.25;
 
 /// Cull reason of a surfel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -185,6 +196,7 @@ impl Projector {
         let image = self.image(&Disc { surfel, centre, normal, axes, projected, mapping });
         let shown = surfel.colour.unwrap_or(DVec3::from_array(self.settings.lighting.albedo.map(f64::from)));
         let towards = if facing > 0.0 { -surfel.normal } else { surfel.normal };
+        let secant = self.secant(centre, facing);
         let splat = Splat {
             centre: image.centre,
             variance: image.variance,
@@ -195,12 +207,23 @@ impl Projector {
             shift: self.shift(surfel.radius, distance),
             normal: towards,
             colour: self.splat_colour(shown, towards, centre),
-            secant: self.secant(centre, facing),
+            secant,
             aspect: surfel.aspect,
             weights: if by_surfel { surfel.weights } else { [1.0; 4] },
             square,
             dual: image.dual,
             clip: surfel.clip.map(|clip| self.screen_clip(&clip, centre, normal)),
+            turn: (facing < 0.0)
+                .then(|| {
+                    self.turn_line(
+                        surfel.curvature,
+                        secant,
+                        (centre - self.eye()).length(),
+                        distance,
+                        image.plane,
+                    )
+                })
+                .flatten(),
             back: facing >= 0.0 && !surfel.two_sided,
             certain: true,
         };
@@ -212,6 +235,32 @@ impl Projector {
         } else {
             Err(if visible { Culled::Invalid } else { Culled::Outside })
         }
+    }
+
+    /// Line on the screen beyond which a surface of this curvature has turned away from the eye: where the tangent plane of a
+    /// front-facing surfel is [`TURN_DEPTH`] below the centre. `from_eye` and `distance` are those of the centre, `plane` as
+    /// in [`Splat`].
+    fn turn_line(
+        &self,
+        curvature: f64,
+        secant: f64,
+        from_eye: f64,
+        distance: f64,
+        plane: DVec3,
+    ) -> Option<DVec3> {
+        let Settings { alpha, splatting, .. } = &self.settings;
+        let shapes = splatting.footprint.is_in_tangent_plane() && splatting.kernel == Kernel::Gaussian;
+        if !(*alpha == Alpha::Coverage && shapes && curvature > 0.0) {
+            return None;
+        }
+        let below = TURN_DEPTH / (secant * curvature);
+        let above = if self.depth.perspective {
+            plane - DVec3::X / (distance * (1.0 + below / from_eye))
+        } else {
+            DVec3::X * (distance + below) - plane
+        };
+        let slope = DVec2::new(above.y, above.z).length();
+        (slope > 0.0).then(|| above / slope)
     }
 
     /// The splat of the surfel moved away by ε along the camera's axis (ren2002 §5.1), for the visibility pass of

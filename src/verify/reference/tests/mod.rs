@@ -42,6 +42,7 @@ fn disc(position: DVec3, normal: DVec3, radius: f64) -> Surfel {
         two_sided: false,
         weights,
         colour: None,
+        curvature: 0.0,
         clip: None,
     }
 }
