@@ -191,9 +191,10 @@ fn sources(estimated: &Estimated) -> String {
 
 /// Describes the points that are left out.
 fn dropped(Dropped { position, transparent }: Dropped, estimated: &Estimated) -> String {
-    let outliers = estimated.outliers;
+    let Estimated { unused, outliers, .. } = *estimated;
     format!(
-        "left out: {position} without a finite position, {transparent} less than a tenth opaque, {outliers} outliers\n"
+        "left out: {position} without a finite position, {transparent} less than a tenth opaque, {unused} that no face uses, {outliers} \
+         outliers\n"
     )
 }
 

@@ -164,9 +164,12 @@ fn pass((name, ms): (&'static str, Statistics)) -> Value {
 fn tally(loaded: &LoadedModel, counts: SplatCounts) -> Value {
     let Dropped { position, transparent } = loaded.dropped;
     let SplatCounts { drawn, behind, eye_plane, back, outside, invalid } = counts;
+    let Estimated { unused, outliers, .. } = loaded.estimated;
     json!({
         "read": loaded.read,
-        "dropped": { "position": position, "transparent": transparent, "outlier": loaded.estimated.outliers },
+        "dropped": {
+            "position": position, "transparent": transparent, "unused": unused, "outlier": outliers,
+        },
         "culled": {
             "behind": behind, "eye_plane": eye_plane, "back": back, "outside": outside, "invalid": invalid,
         },

@@ -111,3 +111,90 @@ impl Boundary {
         &self.lines[first..first + count]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Surfels of radius 0.7 facing z at the corners of the unit squares for which `is_there`, with two triangles for each.
+    fn sheet(is_there: impl Fn(i32, i32) -> bool) -> (Surfels, Vec<[u32; 3]>) {
+        let (side, at) = (7, |x: i32, y: i32| (7 * y + x) as u32);
+        let squares = (0..side - 1).flat_map(|y| (0..side - 1).map(move |x| (x, y)));
+        let triangles = squares.filter(|&(x, y)| is_there(x, y)).flat_map(|(x, y)| {
+            let [a, b, c, d] = [at(x, y), at(x + 1, y), at(x, y + 1), at(x + 1, y + 1)];
+            [[a, b, c], [d, c, b]]
+        });
+        let positions: Vec<Vec3> =
+            (0..side * side).map(|i| Vec3::new((i % side) as f32, (i / side) as f32, 0.0)).collect();
+        let count = positions.len();
+        let surfels = Surfels {
+            positions,
+            normals: vec![Vec3::Z; count],
+            radii: vec![0.7; count],
+            ..Surfels::default()
+        };
+        (surfels, triangles.collect())
+    }
+
+    fn clipped(
+        (mut surfels, triangles): (Surfels, Vec<[u32; 3]>),
+    ) -> (u64, impl Fn(usize, usize) -> Option<Clip>) {
+        let sites = Sites::new(&surfels.positions, &()).unwrap();
+        let count = clip(&mut surfels, &triangles, &sites);
+        (count, move |x, y| surfels.clips.as_ref()?.get(7 * y + x).copied())
+    }
+
+    #[test]
+    fn discs_at_a_boundary_end_there() {
+        let (count, clip) = clipped(sheet(|_, _| true));
+        // At the sides; inside, discs of this radius end before the boundary, but for those next to a corner's diagonal.
+        assert_eq!(count, 24);
+        let is_kept = |x: usize, y: usize, at: [f64; 2]| {
+            clip(x, y).is_none_or(|clip| clip.keeps(DVec3::new(at[0], at[1], 0.0)))
+        };
+        assert!(is_kept(3, 0, [0.3, 0.01]) && !is_kept(3, 0, [0.3, -0.01]));
+        assert!(is_kept(6, 6, [-0.3, -0.3]) && !is_kept(6, 6, [0.1, -0.3]) && !is_kept(6, 6, [-0.3, 0.1]));
+        assert!(clip(3, 3).is_none());
+    }
+
+    #[test]
+    fn at_a_corner_inwards_the_union_is_kept() {
+        let (_, clip) = clipped(sheet(|x, y| x < 3 || y < 3));
+        let corner = clip(3, 3).unwrap();
+        assert!(corner.concave);
+        let is_kept = |x: f64, y: f64| corner.keeps(DVec3::new(x, y, 0.0));
+        assert!(is_kept(-0.3, 0.3) && is_kept(0.3, -0.3) && !is_kept(0.1, 0.1));
+    }
+
+    #[test]
+    fn closed_meshes_and_places_where_boundaries_meet_are_not_clipped() {
+        let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+        let closed =
+            Surfels { positions, normals: vec![Vec3::Z; 4], radii: vec![1.0; 4], ..Surfels::default() };
+        assert_eq!(clipped((closed, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])).0, 0);
+        // Two squares that touch at a corner.
+        let (_, clip) = clipped(sheet(|x, y| (x, y) == (1, 1) || (x, y) == (2, 2)));
+        assert!(clip(2, 2).is_none() && clip(1, 1).is_some());
+    }
+
+    #[test]
+    fn triangles_with_points_of_their_own_are_joined_where_these_coincide() {
+        let (surfels, triangles) = sheet(|_, _| true);
+        let own: Vec<u32> = triangles.iter().flatten().copied().collect();
+        let gather = |values: &[Vec3]| own.iter().map(|&i| values[i as usize]).collect::<Vec<_>>();
+        let mut soup = Surfels {
+            positions: gather(&surfels.positions),
+            normals: gather(&surfels.normals),
+            radii: vec![0.7; own.len()],
+            ..Surfels::default()
+        };
+        let triangles: Vec<_> = (0..own.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let sites = Sites::new(&soup.positions, &()).unwrap();
+        clip(&mut soup, &triangles, &sites);
+        let inside = |p: &Vec3| p.x > 0.0 && p.y > 0.0 && p.x < 6.0 && p.y < 6.0;
+        let clips = soup.clips.unwrap();
+        for (i, position) in soup.positions.iter().enumerate() {
+            assert_eq!(clips.get(i).is_none(), inside(position), "{position}");
+        }
+    }
+}

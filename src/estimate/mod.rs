@@ -117,6 +117,8 @@ pub struct Estimated {
     pub radii_from_faces: u64,
     /// Radii from the nearest points.
     pub radii_from_neighbours: u64,
+    /// Points removed because no face of their mesh uses them.
+    pub unused: u64,
     /// Points removed as outliers.
     pub outliers: u64,
     /// Surfels clipped at detected creases.
@@ -143,6 +145,7 @@ impl Add for Estimated {
             radii_given: self.radii_given + other.radii_given,
             radii_from_faces: self.radii_from_faces + other.radii_from_faces,
             radii_from_neighbours: self.radii_from_neighbours + other.radii_from_neighbours,
+            unused: self.unused + other.unused,
             outliers: self.outliers + other.outliers,
             clipped: self.clipped + other.clipped,
             bounded: self.bounded + other.bounded,
@@ -232,6 +235,7 @@ mod tests {
             radii_from_neighbours: 7,
             outliers: 8,
             clipped: 9,
+            unused: 14,
             bounded: 13,
             line_radii_given: 10,
             line_radii_from_lines: 11,
@@ -247,6 +251,7 @@ mod tests {
             radii_from_neighbours: 14,
             outliers: 16,
             clipped: 18,
+            unused: 28,
             bounded: 26,
             line_radii_given: 20,
             line_radii_from_lines: 22,

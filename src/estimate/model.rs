@@ -7,7 +7,7 @@ use crate::geometry::{Cloud, Colours, Model, Primitives, Surfels};
 use glam::Vec3;
 
 impl Cloud {
-    /// Converts the cloud to a model: lines become ribbons and tubes; faces become triangles if there are lines, or with `polygons`; the
+    /// Converts the cloud to a model: points that a mesh leaves unused are left out; lines become ribbons and tubes; faces become triangles if there are lines, or with `polygons`; the
     /// points that neither uses become surfels, as [`Cloud::into_surfels`]. All have the cloud's origin.
     ///
     /// A tube's vertex without a tangent gets the mean direction of its segments (marroquim2008, section 4.3). A triangle's vertex without
@@ -26,6 +26,11 @@ impl Cloud {
     ) -> Result<(Model, Estimated)> {
         how.check()?;
         self.check_corners()?;
+        let unused = self.unused();
+        if !unused.is_empty() {
+            let (model, estimated) = self.without(&unused).into_model(polygons, how, progress)?;
+            return Ok((model, Estimated { unused: unused.len() as u64, ..estimated }));
+        }
         let (origin, faces) = (self.origin, polygons || self.has_lines());
         if !(faces && (self.has_lines() || !self.triangles.is_empty())) {
             let (surfels, estimated) = self.into_surfels(how, progress)?;
@@ -42,6 +47,12 @@ impl Cloud {
             points.into_surfels(how, progress)?
         };
         Ok((Model { surfels, primitives }, estimated + more))
+    }
+
+    /// The cloud without the points of these indices, which are in order and in no element.
+    fn without(&self, removed: &[u32]) -> Self {
+        let kept: Vec<u32> = (0..self.len() as u32).filter(|i| removed.binary_search(i).is_err()).collect();
+        self.part(&kept)
     }
 
     fn check_corners(&self) -> Result<()> {

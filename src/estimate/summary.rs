@@ -10,6 +10,8 @@ impl Estimated {
         let radii = sources(counts.radii_from_faces, counts.radii_from_neighbours);
         let two_sided = Some(counts.two_sided).filter(|&count| count > 0 && normals.is_some());
         let outliers = Some(counts.outliers).filter(|&count| count > 0);
+        let unused = Some(counts.unused).filter(|&count| count > 0);
+        let bounded = Some(counts.bounded).filter(|&count| count > 0);
         let clipped = Some(counts.clipped).filter(|&count| count > 0);
         let along = Some(counts.line_radii_from_lines).filter(|&count| count > 0);
         let thin = Some(counts.line_radii_from_extent).filter(|&count| count > 0);
@@ -18,6 +20,8 @@ impl Estimated {
             radii.map(|text| format!("radii of {text}")),
             two_sided.map(|count| format!("{count} two-sided")),
             outliers.map(|count| format!("{count} outliers left out")),
+            unused.map(|count| format!("{count} that no face uses left out")),
+            bounded.map(|count| format!("{count} clipped at boundaries of the mesh")),
             clipped.map(|count| format!("{count} clipped at sharp edges")),
             along.map(|count| format!("radii of {count} vertices of lines from others of their line")),
             thin.map(|count| {
@@ -62,8 +66,10 @@ mod tests {
         let line = "radii of 2 vertices of lines from others of their line; radii of 4 vertices of lines from the lines' extent, \
                     as no line radius is given";
         assert_eq!(lines.summary().as_deref(), Some(line));
-        let dropped = Estimated { radii_from_faces: 3, outliers: 1, clipped: 7, ..given };
-        let line = "radii of 3 points from faces; 1 outliers left out; 7 clipped at sharp edges";
+        let dropped =
+            Estimated { radii_from_faces: 3, outliers: 1, clipped: 7, unused: 2, bounded: 5, ..given };
+        let line = "radii of 3 points from faces; 1 outliers left out; 2 that no face uses left out; 5 clipped at boundaries of the mesh; \
+                    7 clipped at sharp edges";
         assert_eq!(dropped.summary().as_deref(), Some(line));
     }
 }

@@ -45,6 +45,9 @@ pub struct Cloud {
     pub view: View,
 }
 
+/// Largest share of unused points in a mesh.
+const MOST_UNUSED: f64 = 0.1;
+
 /// Viewpoint from which a cloud was captured.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum View {
@@ -94,16 +97,35 @@ impl Cloud {
     /// Splits off the points of lines, and with `faces` those of triangles, with these elements; the second cloud has the other points.
     /// Order is kept.
     pub(crate) fn split(self, faces: bool) -> [Self; 2] {
-        let mut used = vec![false; self.len()];
-        let triangles = if faces { &self.triangles[..] } else { &[] };
-        let lines = self.ribbons.iter().chain(&self.tubes).flatten();
-        lines.chain(triangles.iter().flatten()).for_each(|&i| used[i as usize] = true);
+        let used = self.used(faces);
         let which = |is: bool| (0..self.len() as u32).filter(|&i| used[i as usize] == is).collect::<Vec<_>>();
         [which(true), which(false)].map(|kept| self.part(&kept))
     }
 
+    /// Which points are on lines, or with `faces` in triangles.
+    fn used(&self, faces: bool) -> Vec<bool> {
+        let mut used = vec![false; self.len()];
+        let triangles = if faces { &self.triangles[..] } else { &[] };
+        let lines = self.ribbons.iter().chain(&self.tubes).flatten();
+        lines.chain(triangles.iter().flatten()).for_each(|&i| used[i as usize] = true);
+        used
+    }
+
+    /// Indices of the points that a mesh leaves unused, of which there is no more to know than a position: in no triangle and on no line,
+    /// without a radius, and at most [`MOST_UNUSED`] of all. More of them are a cloud beside a mesh.
+    pub(crate) fn unused(&self) -> Vec<u32> {
+        if self.triangles.is_empty() {
+            return Vec::new();
+        }
+        let used = self.used(true);
+        let has_radius = |i: u32| self.radii.as_ref().is_some_and(|radii| radii[i as usize] > 0.0);
+        let unused: Vec<u32> =
+            (0..self.len() as u32).filter(|&i| !used[i as usize] && !has_radius(i)).collect();
+        if unused.len() as f64 <= MOST_UNUSED * self.len() as f64 { unused } else { Vec::new() }
+    }
+
     /// The points `kept`, in that order, and the triangles and lines among them.
-    pub(super) fn part(&self, kept: &[u32]) -> Self {
+    pub(crate) fn part(&self, kept: &[u32]) -> Self {
         let mut place = vec![None; self.len()];
         kept.iter().zip(0..).for_each(|(&from, to)| place[from as usize] = Some(to));
         Self {
@@ -188,6 +210,22 @@ impl From<Surfels> for Cloud {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn few_points_beside_a_mesh_are_unused_and_many_are_a_cloud() {
+        let mesh = |beside: usize| Cloud {
+            positions: vec![Vec3::ZERO; 30 + beside],
+            triangles: (0..10).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
+            ..Default::default()
+        };
+        assert_eq!((mesh(2).unused(), mesh(10).unused()), (vec![30, 31], vec![]));
+        assert_eq!(Cloud { triangles: vec![], ..mesh(2) }.unused(), [0; 0]);
+        let mut radii = vec![0.0; 32];
+        radii[31] = 1.0;
+        let used = Cloud { radii: Some(radii), ..mesh(2) };
+        assert_eq!(used.unused(), [30]);
+        assert_eq!(Cloud { ribbons: vec![[30, 1]], ..mesh(2) }.unused(), [31]);
+    }
 
     #[test]
     fn lines_and_points_are_split() {

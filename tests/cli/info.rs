@@ -22,7 +22,7 @@ fn a_file_is_described() {
         "colours: none",
         "normals: 3 given",
         "radii: 3 given",
-        "left out: 1 without a finite position, 0 less than a tenth opaque, 0 outliers",
+        "left out: 1 without a finite position, 0 less than a tenth opaque, 0 that no face uses, 0 outliers",
     ] {
         assert!(run.text().lines().any(|have| have == line), "no `{line}` in\n{}", run.text());
     }

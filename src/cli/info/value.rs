@@ -117,13 +117,14 @@ fn range(radii: &[f32]) -> Value {
         .map_or(Value::Null, |[min, max, median]| json!({ "min": min, "max": max, "median": median }))
 }
 
-/// Where normals and radii come from, those of lines included, and the number of outliers.
+/// Where normals and radii come from, those of lines included, and the numbers of unused points and outliers.
 fn sources(estimated: &Estimated) -> Value {
     let mut sources = report::estimated(estimated);
     sources["radii_of_lines"] = json!({
         "given": estimated.line_radii_given, "from_lines": estimated.line_radii_from_lines,
         "from_extent": estimated.line_radii_from_extent,
     });
+    sources["unused"] = json!(estimated.unused);
     sources["outliers"] = json!(estimated.outliers);
     sources
 }
