@@ -53,7 +53,12 @@ void main() {
     vec4 mean = convolve(pixel, size);
 #ifdef COLUMNS
     float alpha = COVERAGE ? mean.a : imageLoad(image_output, pixel).a;
-    imageStore(image_output, pixel, alpha > 0.0 ? over_background(mean.rgb / mean.a, alpha) : frame.background);
+    // Pixels without a surface are 0 already, and stores are most of the cost.
+    if (alpha > 0.0) {
+        imageStore(image_output, pixel, over_background(mean.rgb / mean.a, alpha));
+    } else if (frame.background != vec4(0.0)) {
+        imageStore(image_output, pixel, frame.background);
+    }
 #else
     imageStore(filtered_rows, pixel, mean);
 #endif
