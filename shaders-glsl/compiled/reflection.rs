@@ -836,7 +836,7 @@ pub mod constant {
     pub const CORNERS: u32 = 27;
     /// `COUNT`, first in `shaders-glsl/cull.glsl`.
     pub const COUNT: u32 = 2;
-    /// `COVERAGE`, first in `shaders-glsl/filter.glsl`.
+    /// `COVERAGE`, first in `shaders-glsl/attribute.glsl`.
     pub const COVERAGE: u32 = 31;
     /// `COVERAGE_FOOTPRINT`, first in `shaders-glsl/attribute.glsl`.
     pub const COVERAGE_FOOTPRINT: u32 = 67;

@@ -18,6 +18,7 @@ layout(push_constant) uniform Hierarchy {
     uint frame_number;
 } hierarchy;
 
+layout(constant_id = 31) const bool COVERAGE = false; // α is the covered part of a pixel
 layout(constant_id = 47) const bool SLICED = false;
 layout(constant_id = 69) const bool FRONTS = false; // only splats that face the eye: the pass before sides
 

@@ -5,8 +5,6 @@
 
 #include "lib/coverage.glsl"
 
-layout(constant_id = 31) const bool COVERAGE = false; // α is the covered part of a pixel
-
 // Of each of the lane's pixels, as other stages own them: a bit per sample.
 uint coverage_masks[ROWS];
 
@@ -23,19 +21,39 @@ uint row_visible;
 #define COVERAGE_UNROLLED 1
 #endif
 
-// κ below which splats are skipped: 0 while samples of visible pixels are uncovered.
-float coverage_cull_key;
-
-void update_coverage_cull_key() {
-    bool complete = true;
-    for (uint w = 0; w < SAMPLE_WORDS; w++) complete = complete && (row_coverage[w] & row_visible) == row_visible;
-    coverage_cull_key = workgroup_min(complete ? 2.0 : 0.0) > 1.0 ? 1e30 : 0.0;
-}
-
 // Mask of the columns from x0 to x1.
 uint column_mask(float x0, float x1) {
     uint first = uint(clamp(ceil(x0), 0.0, float(TILE))), beyond = uint(clamp(float(TILE - 1) - floor(x1), 0.0, float(TILE)));
     return (0xffu << first) & (0xffu >> beyond) & 0xffu;
+}
+
+// Visible pixels of the tile with uncovered samples, four rows in each word, a bit per column.
+uvec2 incomplete_pixels;
+// κ below which splats are skipped: 0 while there are any.
+float coverage_cull_key;
+
+void update_incomplete_pixels() {
+    uint covered = ~0u;
+    for (uint w = 0; w < SAMPLE_WORDS; w++) covered &= row_coverage[w];
+    if (LANE_SAMPLES >= 4) covered &= covered >> 16;
+    uint row = lane % TILE, columns = row_visible & ~(covered & covered >> 8) & 0xffu;
+    incomplete_pixels = row < 4 ? uvec2(columns << 8 * row, 0) : uvec2(0, columns << 8 * (row - 4));
+    for (uint k = 0; k < STEPS; k++) {
+        incomplete_pixels.x |= shuffle(incomplete_pixels.x, lane ^ 1u << k);
+        incomplete_pixels.y |= shuffle(incomplete_pixels.y, lane ^ 1u << k);
+    }
+    coverage_cull_key = incomplete_pixels == uvec2(0) ? 1e30 : 0.0;
+}
+
+// Four bits as the lowest ones of four bytes.
+uint spread(uint bits) {
+    return bits & 1u | (bits & 2u) << 7 | (bits & 4u) << 14 | (bits & 8u) << 21;
+}
+
+// Whether a splat may cover samples of incomplete pixels: its centre relative to the tile, and half its width and height, px.
+bool reaches_incomplete_pixels(vec2 centre, vec2 reach) {
+    uint columns = column_mask(centre.x - reach.x, centre.x + reach.x), rows = column_mask(centre.y - reach.y, centre.y + reach.y);
+    return ((spread(rows) * columns & incomplete_pixels.x) | (spread(rows >> 4) * columns & incomplete_pixels.y)) != 0;
 }
 
 // Mask of the columns on the kept side of a clip line, whose value at column 0 is `value`.
@@ -167,15 +185,23 @@ void add_coverage_batch(uint count, uint id, uvec2 origin) {
     Turn lane_turn = CURVATURES ? turn_on_tile(lane_solid, least_key(splat)) : NO_TURN;
     vec2 lane_offset = splat.offset - (centre - anchor_of(splat));
     uint lane_nearest = nearest_sample(lane_offset - ceil(lane_offset - 0.5));
-    uint s = 0;
-    do {
-        add_coverage_of(s, lane_splat, lane_solid, lane_turn, lane_offset, lane_nearest, s < count);
+    // More than rounding moves the edges of its fragments.
+    vec2 reach = largest_stretch() * half_extent(splat.axis, visibility_variance(variance)) + 0.01;
+    bool reaches = lane < count && reaches_incomplete_pixels(lane_offset, reach);
+    for (uint first = 0; first < LANES; first += 32) {
+        uint remaining = workgroup_ballot(reaches && lane / 32 == first / 32);
+        do {
+            uint from = first + uint(max(findLSB(remaining), 0));
+            add_coverage_of(from, lane_splat, lane_solid, lane_turn, lane_offset, lane_nearest, remaining != 0);
+            remaining &= remaining - 1;
 #if COVERAGE_UNROLLED == 2
-        add_coverage_of(s + 1, lane_splat, lane_solid, lane_turn, lane_offset, lane_nearest, s + 1 < count);
+            from = first + uint(max(findLSB(remaining), 0));
+            add_coverage_of(from, lane_splat, lane_solid, lane_turn, lane_offset, lane_nearest, remaining != 0);
+            remaining &= remaining - 1;
 #endif
-        s += COVERAGE_UNROLLED;
-    } while (s < count);
-    update_coverage_cull_key();
+        } while (remaining != 0);
+    }
+    update_incomplete_pixels();
 }
 
 #define WALK walk_coverage
@@ -190,22 +216,26 @@ void add_coverage_batch(uint count, uint id, uvec2 origin) {
 
 // Computes coverage of the tile, after visibility: only visible pixels are covered.
 void compute_coverage(uvec2 origin) {
-    for (uint w = 0; w < SAMPLE_WORDS; w++) row_coverage[w] = 0;
     row_visible = 0;
+    uint row_full = 0;
     for (uint r = 0; r < ROWS; r++) {
         depths[r] = is_in_viewport(origin + lane_pixel(r)) ? depths[r] : 0.0;
-        uint columns = uint(depths[r] > 0.0) << lane % TILE;
+        uint columns = uint(depths[r] > 0.0) << lane % TILE | (full_pixels >> r & 1u) << 8 + lane % TILE;
         for (uint k = 0; k < 3; k++) columns |= shuffle(columns, lane ^ 1u << k);
         uint row = lane % TILE;
         columns = shuffle(columns, TILE * (row % ROW_STEP));
-        row_visible = row / ROW_STEP == r ? columns : row_visible;
+        row_visible = row / ROW_STEP == r ? columns & 0xffu : row_visible;
+        row_full = row / ROW_STEP == r ? columns >> 8 : row_full;
     }
-    row_visible *= LANE_SAMPLES < 4 ? 0x101u : 0x1010101u;
-    update_coverage_cull_key();
+    const uint bytes = LANE_SAMPLES < 4 ? 0x101u : 0x1010101u;
+    row_visible *= bytes;
+    for (uint w = 0; w < SAMPLE_WORDS; w++) row_coverage[w] = row_full * bytes;
+    update_incomplete_pixels();
     // First those that visibility visited: they cover most tiles alone.
     WORKGROUP_BARRIER();
-    bool all_recorded = visited_count <= MOST_VISITED;
-    walk_coverage(origin, origin + TILE - 1, all_recorded ? 0 : SCRATCH, all_recorded ? visited_count : SCRATCH, true);
+    bool lacks = coverage_cull_key == 0.0, all_recorded = visited_count <= MOST_VISITED;
+    uint first = all_recorded ? 0 : SCRATCH, end = all_recorded && lacks ? visited_count : first;
+    walk_coverage(origin, origin + TILE - 1, first, end, lacks);
     for (uint r = 0; r < ROWS; r++) {
         uvec2 pixel = lane_pixel(r);
         uint mask = is_resumed() ? coverage_masks[r] : 0;

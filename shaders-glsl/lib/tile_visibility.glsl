@@ -4,6 +4,21 @@
 uint nearest_splats[ROWS]; // id of the nearest splat
 #endif
 
+// COVERAGE: the lane's pixels that lie within the solid part of a disc, of which all samples are covered; a bit each.
+uint full_pixels;
+
+// Distance of the farthest sample from a pixel's centre, px: below it.
+const float FARTHEST_SAMPLE = 0.67;
+
+// Largest squared distance, σ of visibility's ellipse, of pixel centres that are FARTHEST_SAMPLE inside the solid ellipse, and the least κ of
+// centres that far before the turn line. No pixel is full by discs with clips, or whose shapes are no ellipses.
+vec2 full_limits(Splat splat, vec2 variance, vec2 visible, uint clip) {
+    float minor = SOLID * frame.cutoff * sqrt(variance.y), eroded = minor - FARTHEST_SAMPLE;
+    bool is_ellipse = !on_plane() && rim() == 1.0 && clip == NO_CLIP && eroded > 0.0;
+    float distance = eroded / sqrt(visible.y);
+    return vec2(is_ellipse ? distance * distance : -1.0, least_key(splat) + FARTHEST_SAMPLE * length(splat.plane_hi.yz));
+}
+
 // Farthest κ of the tile's pixels: splats behind it are occluded.
 float visibility_cull_key;
 
@@ -14,11 +29,13 @@ void update_visibility_cull_key() {
 }
 
 // Updates the depths with splat `id`, if `is_splat`.
-void add_visibility(TileSplat splat, vec2 limit, uint id, bool is_splat) {
+void add_visibility(TileSplat splat, vec2 limit, vec2 full, uint id, bool is_splat) {
     for (uint r = 0; r < ROWS; r++) {
         vec2 m;
         float key, rank;
         bool has_fragment = tile_fragment(splat, vec2(lane_pixel(r)), m, key, rank) && is_splat;
+        bool is_full = COVERAGE && !FRONTS && has_fragment && dot(m, m) <= full.x && (!CURVATURES || key >= full.y);
+        full_pixels |= uint(is_full) << r;
 #ifdef NEAREST_SPLAT
         float depth = ranked(min(key, limit.x), rank);
         bool nearer = has_fragment && (depth > depths[r] || depth == depths[r] && id < nearest_splats[r]);
@@ -35,12 +52,14 @@ void add_visibility_batch(uint count, uint id, uvec2 origin) {
     Splat splat = splat_of(id);
     vec2 variance = visibility_variance(variance_of(splat));
     TileSplat lane_splat = splat_on_tile(ellipse_of(splat, variance, clip_of(id)), vec2(origin) + 0.5);
-    vec2 limits = vec2(splat.key_disc, splat.epsilon);
+    vec2 limits = vec2(splat.key_disc, splat.epsilon), lane_full = vec2(0.0);
+    if (COVERAGE && !FRONTS) lane_full = full_limits(splat, variance_of(splat), variance, clip_of(id));
     uint s = 0;
     do {
         // Unrolled: loop iterations are limited on lavapipe, and a single splat leaves it idle.
         for (uint k = 0; k < UNROLLED; k++) {
-            add_visibility(shuffle(lane_splat, s + k), shuffle(limits, s + k), shuffle(id, s + k), s + k < count);
+            vec2 full = COVERAGE && !FRONTS ? shuffle(lane_full, s + k) : vec2(0.0);
+            add_visibility(shuffle(lane_splat, s + k), shuffle(limits, s + k), full, shuffle(id, s + k), s + k < count);
         }
         s += UNROLLED;
     } while (s < count);
@@ -67,6 +86,7 @@ void compute_visibility(uvec2 origin) {
 #endif
     }
     update_visibility_cull_key();
+    full_pixels = 0;
     visited_count = 0;
     walk_visibility(origin, origin + TILE - 1, 0, 0, true);
 }
