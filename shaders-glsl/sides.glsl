@@ -29,7 +29,7 @@ layout(local_size_x = 64) in;
 layout(set = 0, binding = 19, std430) writeonly buffer SplatBoxes { Box splat_boxes[]; };
 
 float front_key(uvec2 pixel) {
-    return uintBitsToFloat(visibility[pixel_index(ivec2(pixel))]);
+    return uintBitsToFloat(visibility[pixel_index(ivec2(pixel))] & ~FULL_PIXEL);
 }
 
 bool has_surfel(uint slot) {

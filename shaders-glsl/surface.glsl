@@ -9,6 +9,7 @@
 #include "lib/frame.glsl"
 #include "lib/picture_pixel.glsl"
 #include "lib/splat.glsl"
+#include "lib/pixels.glsl"
 #include "lib/tile.glsl"
 #include "lib/tile_visibility.glsl"
 #include "lib/tile_coverage.glsl"
@@ -17,6 +18,11 @@
 void main() {
     load_frame();
     uvec2 origin = tile_origin();
+    for (uint r = 0; r < ROWS; r++) {
+        uvec2 pixel = origin + lane_pixel(r);
+        uint index = is_in_viewport(pixel) ? pixel_index(ivec2(pixel)) : 0;
+        if (has_depths()) load_depth(r, visibility[index]);
+    }
     compute_visibility(origin);
     if (COVERAGE) compute_coverage(origin);
     sum_attributes(origin);

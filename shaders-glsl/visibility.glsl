@@ -34,7 +34,7 @@ void main() {
     for (uint r = 0; r < ROWS; r++) {
         uvec2 pixel = origin + lane_pixel(r);
         uint index = is_in_viewport(pixel) ? pixel_index(ivec2(pixel)) : 0;
-        if (is_resumed()) depths[r] = uintBitsToFloat(visibility[index]);
+        if (has_depths()) load_depth(r, visibility[index]);
         if (is_resumed() && COVERAGE && !FRONTS) coverage_masks[r] = coverage[index];
     }
     compute_visibility(origin);
@@ -44,7 +44,7 @@ void main() {
         uvec2 pixel = origin + lane_pixel(r);
         if (!is_in_viewport(pixel)) continue;
         uint index = pixel_index(ivec2(pixel));
-        visibility[index] = floatBitsToUint(depths[r]);
+        visibility[index] = depth_bits(r);
         if (COVERAGE && !FRONTS) coverage[index] = coverage_masks[r];
     }
 }

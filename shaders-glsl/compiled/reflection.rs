@@ -715,8 +715,8 @@ pub static SURFACE_COMPUTE: Module = Module {
     name: "surface_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 66, 67, 69, 70],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 66, 67, 68, 69, 70],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
 
@@ -725,8 +725,8 @@ pub static SURFACE_SUBGROUPS_COMPUTE: Module = Module {
     name: "surface_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 66, 67, 69, 70],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false)],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 66, 67, 68, 69, 70],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
 
@@ -755,7 +755,7 @@ pub static VISIBILITY_COMPUTE: Module = Module {
     name: "visibility_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("visibility_compute.spv"),
-    constants: &[0, 15, 16, 23, 24, 31, 44, 47, 67, 69, 70],
+    constants: &[0, 15, 16, 23, 24, 31, 44, 47, 67, 68, 69, 70],
     resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_CLIPS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -805,7 +805,7 @@ pub static VISIBILITY_SUBGROUPS_COMPUTE: Module = Module {
     name: "visibility_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("visibility_subgroups_compute.spv"),
-    constants: &[0, 15, 16, 23, 24, 31, 44, 47, 67, 69, 70],
+    constants: &[0, 15, 16, 23, 24, 31, 44, 47, 67, 68, 69, 70],
     resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -840,7 +840,7 @@ pub mod constant {
     pub const COVERAGE: u32 = 31;
     /// `COVERAGE_FOOTPRINT`, first in `shaders-glsl/attribute.glsl`.
     pub const COVERAGE_FOOTPRINT: u32 = 67;
-    /// `CULL_AUTO`, first in `shaders-glsl/footprint.glsl`.
+    /// `CULL_AUTO`, first in `shaders-glsl/attribute.glsl`.
     pub const CULL_AUTO: u32 = 68;
     /// `CULL_BACK`, first in `shaders-glsl/cull.glsl`.
     pub const CULL_BACK: u32 = 1;

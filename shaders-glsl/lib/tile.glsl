@@ -20,6 +20,7 @@ layout(push_constant) uniform Hierarchy {
 
 layout(constant_id = 31) const bool COVERAGE = false; // α is the covered part of a pixel
 layout(constant_id = 47) const bool SLICED = false;
+layout(constant_id = 68) const bool CULL_AUTO = false; // pass sides has culled some splats that face away
 layout(constant_id = 69) const bool FRONTS = false; // only splats that face the eye: the pass before sides
 
 // Whether this dispatch resumes the state of the previous slice, and whether no further slice follows.

@@ -4,8 +4,33 @@
 uint nearest_splats[ROWS]; // id of the nearest splat
 #endif
 
+#ifdef NEAREST_SPLAT
+const bool HAS_FRONTS = false;
+#else
+// The depths of the splats that face the eye are known: others are to be added.
+const bool HAS_FRONTS = CULL_AUTO && !FRONTS;
+#endif
+
 // COVERAGE: the lane's pixels that lie within the solid part of a disc, of which all samples are covered; a bit each.
-uint full_pixels;
+uint full_pixels = 0;
+
+// Whether depths are those of a dispatch before: of the previous slice, or of the splats that face the eye, before sides.
+bool has_depths() {
+    return is_resumed() || HAS_FRONTS;
+}
+
+#ifndef NEAREST_SPLAT
+// Loads the depth of the lane's pixel `row` as store_depth has stored it.
+void load_depth(uint row, uint bits) {
+    depths[row] = uintBitsToFloat(bits & ~FULL_PIXEL);
+    full_pixels |= uint((bits & FULL_PIXEL) != 0) << row;
+}
+
+// Bits of the depth of the lane's pixel `row`, and of the splats that face the eye whether the pixel is full.
+uint depth_bits(uint row) {
+    return floatBitsToUint(depths[row]) | (FRONTS && (full_pixels >> row & 1u) != 0 ? FULL_PIXEL : 0);
+}
+#endif
 
 // Distance of the farthest sample from a pixel's centre, px: below it.
 const float FARTHEST_SAMPLE = 0.67;
@@ -34,7 +59,7 @@ void add_visibility(TileSplat splat, vec2 limit, vec2 full, uint id, bool is_spl
         vec2 m;
         float key, rank;
         bool has_fragment = tile_fragment(splat, vec2(lane_pixel(r)), m, key, rank) && is_splat;
-        bool is_full = COVERAGE && !FRONTS && has_fragment && dot(m, m) <= full.x && (!CURVATURES || key >= full.y);
+        bool is_full = COVERAGE && has_fragment && dot(m, m) <= full.x && (!CURVATURES || key >= full.y);
         full_pixels |= uint(is_full) << r;
 #ifdef NEAREST_SPLAT
         float depth = ranked(min(key, limit.x), rank);
@@ -48,21 +73,34 @@ void add_visibility(TileSplat splat, vec2 limit, vec2 full, uint id, bool is_spl
     }
 }
 
+// Updates the depths with the splat that lane `from` has.
+void add_visibility_of(uint from, TileSplat splat, vec2 limit, vec2 full, uint id, bool is_splat) {
+    vec2 of_splat = COVERAGE ? shuffle(full, from) : vec2(0.0);
+    add_visibility(shuffle(splat, from), shuffle(limit, from), of_splat, shuffle(id, from), is_splat);
+}
+
 void add_visibility_batch(uint count, uint id, uvec2 origin) {
     Splat splat = splat_of(id);
     vec2 variance = visibility_variance(variance_of(splat));
     TileSplat lane_splat = splat_on_tile(ellipse_of(splat, variance, clip_of(id)), vec2(origin) + 0.5);
     vec2 limits = vec2(splat.key_disc, splat.epsilon), lane_full = vec2(0.0);
-    if (COVERAGE && !FRONTS) lane_full = full_limits(splat, variance_of(splat), variance, clip_of(id));
-    uint s = 0;
-    do {
-        // Unrolled: loop iterations are limited on lavapipe, and a single splat leaves it idle.
-        for (uint k = 0; k < UNROLLED; k++) {
-            vec2 full = COVERAGE && !FRONTS ? shuffle(lane_full, s + k) : vec2(0.0);
-            add_visibility(shuffle(lane_splat, s + k), shuffle(limits, s + k), full, shuffle(id, s + k), s + k < count);
-        }
-        s += UNROLLED;
-    } while (s < count);
+    if (COVERAGE) lane_full = full_limits(splat, variance_of(splat), variance, clip_of(id));
+    // Unrolled: loop iterations are limited on lavapipe, and a single splat leaves it idle.
+    if (HAS_FRONTS && LANES <= 32) {
+        uint remaining = workgroup_ballot(lane < count && is_back(splat));
+        do {
+            for (uint k = 0; k < UNROLLED; k++) {
+                add_visibility_of(uint(max(findLSB(remaining), 0)), lane_splat, limits, lane_full, id, remaining != 0);
+                remaining &= remaining - 1;
+            }
+        } while (remaining != 0);
+    } else {
+        uint s = 0;
+        do {
+            for (uint k = 0; k < UNROLLED; k++) add_visibility_of(s + k, lane_splat, limits, lane_full, id, s + k < count);
+            s += UNROLLED;
+        } while (s < count);
+    }
     update_visibility_cull_key();
 }
 
@@ -76,17 +114,16 @@ void add_visibility_batch(uint count, uint id, uvec2 origin) {
 #define WALK_BATCH(count, id) add_visibility_batch(count, id, origin)
 #include "lib/walk.glsl"
 
-// Computes the depths of the tile, from empty ones or from the previous slice.
+// Computes the depths of the tile, from empty ones or from those of the dispatch before.
 void compute_visibility(uvec2 origin) {
     // Pixels outside the viewport never hold back the cull key.
     for (uint r = 0; r < ROWS; r++) {
-        depths[r] = !is_in_viewport(origin + lane_pixel(r)) ? 1e30 : is_resumed() ? depths[r] : 0.0;
+        depths[r] = !is_in_viewport(origin + lane_pixel(r)) ? 1e30 : has_depths() ? depths[r] : 0.0;
 #ifdef NEAREST_SPLAT
         nearest_splats[r] = is_resumed() ? nearest_splats[r] : 0;
 #endif
     }
     update_visibility_cull_key();
-    full_pixels = 0;
     visited_count = 0;
     walk_visibility(origin, origin + TILE - 1, 0, 0, true);
 }
