@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn the_other_side_of_a_sheet_does_not_bend_it() {
         let sheet = |s: f32, t: f32| {
-            let up = if (s * 1000.0) as u32 % 2 == 0 { 1.0 } else { -1.0 };
+            let up = if ((s * 1000.0) as u32).is_multiple_of(2) { 1.0 } else { -1.0 };
             [Vec3::new(s, t, 1e-3 * up), up * Vec3::Z]
         };
         assert!(of(1000, sheet).iter().all(|k| *k == 0.0));

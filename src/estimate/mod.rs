@@ -44,8 +44,8 @@ pub struct Estimate {
     pub radius_scale: f32,
     /// Whether discs with an estimated radius are ellipses, longer where points are sparser.
     pub elliptical: bool,
-    /// Whether curvatures are estimated, too: [`Surfels::curvatures`].
-    pub curvatures: bool,
+    /// Whether outlines are estimated, too: [`Surfels::curvatures`], and clips at the boundaries of open meshes.
+    pub outlines: bool,
     /// Removes points whose mean distance from their neighbours is more than this number of standard deviations above the average.
     pub outliers: Option<f32>,
     /// Clips discs at creases where normals turn by more than this angle, radians.
@@ -61,7 +61,7 @@ impl Default for Estimate {
             radius: None,
             radius_scale: 1.0,
             elliptical: false,
-            curvatures: true,
+            outlines: true,
             outliers: None,
             sharp: None,
             line_radius: None,
@@ -183,7 +183,7 @@ impl Cloud {
         faces::fill(&mut draft, how);
         progress.check_cancelled()?;
         let lacks_anything = draft.lacks_anything();
-        let sites = (lacks_anything || how.curvatures)
+        let sites = (lacks_anything || how.outlines)
             .then(|| Sites::new(&draft.surfels.positions, progress))
             .transpose()?;
         if let Some(sites) = sites.as_ref().filter(|_| lacks_anything) {
@@ -191,17 +191,9 @@ impl Cloud {
         }
         let triangles = std::mem::take(&mut draft.triangles);
         let (mut surfels, mut estimated) = draft.finish(how)?;
-        if !triangles.is_empty() {
-            estimated.bounded = match &sites {
-                Some(sites) => boundary::clip(&mut surfels, &triangles, sites),
-                None => {
-                    let sites = Sites::new(&surfels.positions, progress)?;
-                    boundary::clip(&mut surfels, &triangles, &sites)
-                }
-            };
-        }
-        if let Some(sites) = sites.filter(|_| how.curvatures) {
+        if let Some(sites) = sites.filter(|_| how.outlines) {
             surfels.curvatures = Some(curvature::curvatures(&surfels, &sites, progress)?);
+            estimated.bounded = boundary::clip(&mut surfels, &triangles, &sites);
         }
         if let Some(angle) = how.sharp {
             estimated.clipped = creases::clip(&mut surfels, angle, how, progress)?;

@@ -26,11 +26,18 @@ impl Cloud {
     ) -> Result<(Model, Estimated)> {
         how.check()?;
         self.check_corners()?;
-        let unused = self.unused();
-        if !unused.is_empty() {
-            let (model, estimated) = self.without(&unused).into_model(polygons, how, progress)?;
-            return Ok((model, Estimated { unused: unused.len() as u64, ..estimated }));
-        }
+        let (cloud, unused) = self.without_unused();
+        let (model, estimated) = cloud.into_model_whole(polygons, how, progress)?;
+        Ok((model, Estimated { unused, ..estimated }))
+    }
+
+    /// Converts all points of a cloud whose elements are valid.
+    fn into_model_whole(
+        self,
+        polygons: bool,
+        how: &Estimate,
+        progress: &dyn Progress,
+    ) -> Result<(Model, Estimated)> {
         let (origin, faces) = (self.origin, polygons || self.has_lines());
         if !(faces && (self.has_lines() || !self.triangles.is_empty())) {
             let (surfels, estimated) = self.into_surfels(how, progress)?;
@@ -47,12 +54,6 @@ impl Cloud {
             points.into_surfels(how, progress)?
         };
         Ok((Model { surfels, primitives }, estimated + more))
-    }
-
-    /// The cloud without the points of these indices, which are in order and in no element.
-    fn without(&self, removed: &[u32]) -> Self {
-        let kept: Vec<u32> = (0..self.len() as u32).filter(|i| removed.binary_search(i).is_err()).collect();
-        self.part(&kept)
     }
 
     fn check_corners(&self) -> Result<()> {

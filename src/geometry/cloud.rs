@@ -111,21 +111,25 @@ impl Cloud {
         used
     }
 
-    /// Indices of the points that a mesh leaves unused, of which there is no more to know than a position: in no triangle and on no line,
-    /// without a radius, and at most [`MOST_UNUSED`] of all. More of them are a cloud beside a mesh.
-    pub(crate) fn unused(&self) -> Vec<u32> {
+    /// The cloud without the points that a mesh leaves unused, and their number: points in no triangle and on no line, without a radius, if
+    /// they are at most [`MOST_UNUSED`] of all. More of them are a cloud beside a mesh.
+    pub(crate) fn without_unused(self) -> (Self, u64) {
         if self.triangles.is_empty() {
-            return Vec::new();
+            return (self, 0);
         }
         let used = self.used(true);
-        let has_radius = |i: u32| self.radii.as_ref().is_some_and(|radii| radii[i as usize] > 0.0);
-        let unused: Vec<u32> =
-            (0..self.len() as u32).filter(|&i| !used[i as usize] && !has_radius(i)).collect();
-        if unused.len() as f64 <= MOST_UNUSED * self.len() as f64 { unused } else { Vec::new() }
+        let has_radius = |i: usize| self.radii.as_ref().is_some_and(|radii| radii[i] > 0.0);
+        let kept: Vec<u32> =
+            (0..self.len() as u32).filter(|&i| used[i as usize] || has_radius(i as usize)).collect();
+        let unused = self.len() - kept.len();
+        if unused == 0 || unused as f64 > MOST_UNUSED * self.len() as f64 {
+            return (self, 0);
+        }
+        (self.part(&kept), unused as u64)
     }
 
     /// The points `kept`, in that order, and the triangles and lines among them.
-    pub(crate) fn part(&self, kept: &[u32]) -> Self {
+    pub(super) fn part(&self, kept: &[u32]) -> Self {
         let mut place = vec![None; self.len()];
         kept.iter().zip(0..).for_each(|(&from, to)| place[from as usize] = Some(to));
         Self {
@@ -218,13 +222,16 @@ mod tests {
             triangles: (0..10).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
             ..Default::default()
         };
-        assert_eq!((mesh(2).unused(), mesh(10).unused()), (vec![30, 31], vec![]));
-        assert_eq!(Cloud { triangles: vec![], ..mesh(2) }.unused(), [0; 0]);
+        let left = |cloud: Cloud| {
+            let (cloud, unused) = cloud.without_unused();
+            (cloud.len(), unused)
+        };
+        assert_eq!((left(mesh(2)), left(mesh(10))), ((30, 2), (40, 0)));
+        assert_eq!(left(Cloud { triangles: vec![], ..mesh(2) }), (32, 0));
         let mut radii = vec![0.0; 32];
         radii[31] = 1.0;
-        let used = Cloud { radii: Some(radii), ..mesh(2) };
-        assert_eq!(used.unused(), [30]);
-        assert_eq!(Cloud { ribbons: vec![[30, 1]], ..mesh(2) }.unused(), [31]);
+        assert_eq!(left(Cloud { radii: Some(radii), ..mesh(2) }), (31, 1));
+        assert_eq!(left(Cloud { ribbons: vec![[30, 1]], ..mesh(2) }), (31, 1));
     }
 
     #[test]

@@ -244,8 +244,7 @@ impl Load<'_> {
         let some = |part: &Part| part.cloud.some((part.cloud.len() * PREVIEW).div_ceil(all));
         let clouds = parts.iter().map(some).collect();
         let cloud = Cloud::merge(clouds, Settings::default().lighting.albedo).ok()?;
-        let how =
-            Estimate { curvatures: false, outliers: None, sharp: None, ..self.options.estimate.clone() };
+        let how = Estimate { outlines: false, outliers: None, sharp: None, ..self.options.estimate.clone() };
         // Estimation may fail for few points and succeed for all: then there is no preview.
         let (mut model, _) = cloud.into_model(false, &how, &()).ok()?;
         let colouring = self.options.colouring.as_ref();
@@ -264,8 +263,12 @@ impl Load<'_> {
         };
         let keeps_values = self.options.colouring.as_ref().is_some_and(Colouring::keeps_values);
         let cloud = if keeps_values { without_estimation(cloud) } else { cloud };
+        let how = Estimate {
+            outlines: self.options.estimate.outlines && !keeps_values,
+            ..self.options.estimate.clone()
+        };
         let progress: &dyn Progress = self.listener;
-        let made = cloud.into_model(draws_faces || self.draws_faces(), &self.options.estimate, progress);
+        let made = cloud.into_model(draws_faces || self.draws_faces(), &how, progress);
         let (model, estimated) = made.map_err(|error| error.in_input(name.as_str()))?;
         if let Some(text) = estimated.summary() {
             self.listener.note(&format!("{name}: {text}"));
@@ -343,6 +346,7 @@ fn warn(name: &str, report: &Report) {
 
 /// Replaces the attributes that would be estimated: only the values of the cloud are needed, in the order of its surfels and vertices.
 fn without_estimation(cloud: Cloud) -> Cloud {
+    let (cloud, _) = cloud.without_unused();
     let count = cloud.len();
     Cloud {
         normals: Some(vec![Vec3::Z; count]),

@@ -22,7 +22,10 @@ fn check_counts(counts: &Value) {
     let total = sum(&counts["dropped"]) + sum(&counts["culled"]) + counts["drawn"].as_u64().unwrap();
     assert_eq!(counts["read"].as_u64(), Some(total), "{counts}");
     assert_eq!(counts["drawn"], 1, "{counts}");
-    assert_eq!(counts["dropped"], serde_json::json!({ "position": 1, "transparent": 0, "outlier": 0 }));
+    assert_eq!(
+        counts["dropped"],
+        serde_json::json!({ "position": 1, "transparent": 0, "unused": 0, "outlier": 0 })
+    );
     let culled = serde_json::json!({ "behind": 1, "eye_plane": 1, "back": 1, "outside": 1, "invalid": 0 });
     assert_eq!(counts["culled"], culled);
 }

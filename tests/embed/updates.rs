@@ -18,6 +18,7 @@ fn changes<'a>(surfels: &'a Surfels, range: std::ops::Range<usize>, colours: &'a
     Changes {
         positions: Some(&surfels.positions[range.clone()]),
         normals: Some(&surfels.normals[range.clone()]),
+        curvatures: surfels.curvatures.as_ref().map(|curvatures| &curvatures[range.clone()]),
         radii: Some(&surfels.radii[range.clone()]),
         two_sided: surfels.two_sided.as_ref().map(|two_sided| &two_sided[range.clone()]),
         ellipses: surfels.ellipses.as_ref().map(|ellipses| &ellipses[range.clone()]),
@@ -179,6 +180,7 @@ fn updates_that_cannot_be_made_are_refused_and_change_nothing() {
     );
     refused(plain.update(0, &Changes { colours: Some(&linear), ..none }), "Srgb8");
     refused(plain.update(0, &Changes { ellipses: Some(&[]), ..none }), "circles");
+    refused(plain.update(0, &Changes { curvatures: Some(&[]), ..none }), "curvatures need normals");
     refused(plain.update(0, &Changes { two_sided: Some(&[true]), ..none }), "two_sided needs radii");
     let sides = scene(|s| s.two_sided = Some(vec![true; 500]));
     refused(sides.update(0, &Changes { radii: Some(&radius), ..none }), "two_sided");

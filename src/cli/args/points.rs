@@ -49,7 +49,7 @@ impl Points {
             radius: self.radius,
             radius_scale: self.radius_scale,
             elliptical: self.elliptical,
-            curvatures: true,
+            outlines: true,
             outliers: self.drop_outliers,
             sharp: None,
             line_radius: self.line_radius,
