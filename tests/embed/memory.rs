@@ -3,6 +3,7 @@
 use crate::fixture::{assert_silent, open, sphere, upload};
 use crate::host::Host;
 use crate::rig::{Rendered, Rig};
+use crate::support::if_whole;
 use ash::vk::{self, MemoryPropertyFlags as Flags};
 use std::ptr::NonNull;
 use std::sync::Arc;
@@ -89,8 +90,8 @@ fn frames(host: &Host, device: &Arc<Device>) -> Vec<(String, Rendered)> {
 fn frames_do_not_depend_on_what_memory_contained() {
     let Some(host) = open(|all| all) else { return };
     let expected = frames(&host, &host.external_device(None).unwrap());
-    for pattern in PATTERNS {
-        for ((name, found), (_, expected)) in frames(&host, &device(&host, pattern)).iter().zip(&expected) {
+    for pattern in &PATTERNS[if_whole(0, 1)..] {
+        for ((name, found), (_, expected)) in frames(&host, &device(&host, *pattern)).iter().zip(&expected) {
             let differ = found.0.iter().zip(&expected.0).filter(|(a, b)| a != b).count();
             assert!(found == expected, "{name}, memory of {pattern:x?}: {differ} px differ");
         }

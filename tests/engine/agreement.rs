@@ -92,7 +92,7 @@ fn every_case_with_coverage() {
     let all = [Splatting::default(), object_ewa::METHOD.splatting, sprites::UNFILTERED.splatting];
     let by = |(i, splatting): (usize, Splatting)| {
         let cases = with_axes(|case| Settings { splatting, alpha: Alpha::Coverage, ..case.settings.clone() });
-        failures(&cases, &sampled_views(i, 2), &format!("coverage, {splatting:?}"))
+        failures(&cases, &sampled_views(i, 3), &format!("coverage, {splatting:?}"))
     };
     assert_agree(all.into_iter().enumerate().flat_map(by).collect());
 }
