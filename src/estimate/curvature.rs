@@ -14,8 +14,8 @@ const SAME_SIDE: f64 = 0.0;
 /// Number of surfels per task.
 const PIECE: usize = 1 << 12;
 
-/// The largest curvature at every surfel towards one of its neighbours, 1 / the positions' unit; 0 at two-sided surfels, and without
-/// neighbours of the same side.
+/// The second largest curvature at every surfel towards one of its neighbours, 1 / the positions' unit: a single stray one does not bend the
+/// surface. 0 at two-sided surfels, and without two neighbours of the same side.
 pub(super) fn curvatures(surfels: &Surfels, sites: &Sites, progress: &dyn Progress) -> Result<Vec<f32>> {
     let mut curvatures = vec![0.0; surfels.len()];
     let (done, total) = (AtomicU64::new(0), surfels.len() as u64);
@@ -45,7 +45,9 @@ fn curvature_at(surfels: &Surfels, sites: &Sites, i: usize) -> Option<f32> {
         // Through the centre and the neighbour, tangent to the disc.
         is_same_side.then(|| -2.0 * offset.dot(normal) / offset.length_squared())
     });
-    let curvature = circles.fold(f64::NEG_INFINITY, f64::max) / f64::from(sites.unit);
+    let second = |[most, second]: [f64; 2], circle: f64| [most.max(circle), second.max(most.min(circle))];
+    let [_, curvature] =
+        circles.fold([f64::NEG_INFINITY; 2], second).map(|circle| circle / f64::from(sites.unit));
     Some(curvature as f32).filter(|curvature| curvature.is_finite())
 }
 
