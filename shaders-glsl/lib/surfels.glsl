@@ -44,7 +44,7 @@ vec3 stored_normal(uint i) {
     return uintBitsToFloat(uvec3(normals[k], normals[k + 1], normals[k + 2]));
 }
 
-// Larger principal curvature of the surface, 1 / unit, which follows the normal; above 0 where it bends away from the normal.
+// Largest normal curvature of the surface, 1 / unit, which follows the normal; above 0 where it bends away from the normal.
 float curvature_of(uint i) {
     return uintBitsToFloat(normals[NORMAL_OFFSET + NORMAL_STRIDE * i + 3]);
 }

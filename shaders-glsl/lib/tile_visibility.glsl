@@ -20,7 +20,7 @@ bool has_depths() {
 }
 
 #ifndef NEAREST_SPLAT
-// Loads the depth of the lane's pixel `row` as store_depth has stored it.
+// Loads the depth of the lane's pixel `row` from the bits that depth_bits gave.
 void load_depth(uint row, uint bits) {
     depths[row] = uintBitsToFloat(bits & ~FULL_PIXEL);
     full_pixels |= uint((bits & FULL_PIXEL) != 0) << row;

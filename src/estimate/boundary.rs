@@ -10,6 +10,9 @@ use std::f64::consts::PI;
 /// the number of new clips.
 pub(super) fn clip(surfels: &mut Surfels, triangles: &[[u32; 3]], sites: &Sites) -> u64 {
     let boundary = Boundary::new(&surfels.positions, triangles, sites);
+    if boundary.lines.is_empty() {
+        return 0;
+    }
     let new = |i: usize| {
         let lines = boundary.of(sites.of_point[i]);
         clip_of(lines, boundary.angles[sites.of_point[i] as usize], &|line: &Line| {

@@ -24,7 +24,7 @@ pub struct Surfel {
     pub major: DVec3,
     /// The shorter semi-axis divided by the longer: 1 for a circle.
     pub aspect: f64,
-    /// Larger principal curvature of the surface, above 0 where it bends away from the normal; 0 if unknown.
+    /// Largest normal curvature of the surface, above 0 where it bends away from the normal; 0 if unknown.
     pub curvature: f64,
     /// Whether both sides are fronts.
     pub two_sided: bool,
