@@ -85,8 +85,13 @@ const float TURN_DEPTH = 0.25;
 
 // See least_key; 0 where the surface does not turn away.
 float least_key_of(uint i, Disc disc) {
-    float curvature = curvature_of(i), distance = PERSPECTIVE ? length(disc.hi) : 1.0;
-    if (!(curvature > 0.0 && disc.facing.x < 0.0)) return 0.0;
+    uint stored = curvature_of(i);
+    if (stored == 0 || disc.facing.x >= 0.0) return 0.0;
+    float distance = PERSPECTIVE ? length(disc.hi) : 1.0;
+    vec3 ray = PERSPECTIVE ? disc.hi / distance : view.forward_hi.xyz;
+    // Down the tangent plane, as the eye sees it.
+    float curvature = curvature_along(stored, ray * tangents(disc.normal));
+    if (!(curvature > 0.0)) return 0.0;
     float depth = TURN_DEPTH * -disc.facing.x / distance / curvature, key = key_of_disc(disc.w.x, disc.hi, 0.0);
     return PERSPECTIVE ? key / (1.0 + depth / distance) : key - view.key_slope * depth;
 }

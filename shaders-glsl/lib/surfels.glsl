@@ -44,9 +44,17 @@ vec3 stored_normal(uint i) {
     return uintBitsToFloat(uvec3(normals[k], normals[k + 1], normals[k + 2]));
 }
 
-// Largest normal curvature of the surface, 1 / unit, which follows the normal; above 0 where it bends away from the normal.
-float curvature_of(uint i) {
-    return uintBitsToFloat(normals[NORMAL_OFFSET + NORMAL_STRIDE * i + 3]);
+// Curvature of src/geometry/curvature.rs, which follows the normal.
+uint curvature_of(uint i) {
+    return normals[NORMAL_OFFSET + NORMAL_STRIDE * i + 3];
+}
+
+// Normal curvature, 1 / unit, in the direction of a tangent: above 0 where the surface bends away from the normal (Euler's formula).
+float curvature_along(uint curvature, vec2 tangent) {
+    float largest = uintBitsToFloat(curvature & 0xffff0000u);
+    vec2 shape = unpackSnorm4x8(curvature).xy;
+    float angle = 1.5707963 * shape.y, along = dot(tangent, vec2(cos(angle), sin(angle)));
+    return largest * mix(shape.x, 1.0, along * along / max(dot(tangent, tangent), 1e-30));
 }
 
 // Unit normal.

@@ -3,7 +3,8 @@
 use super::sites::Sites;
 use crate::Progress;
 use crate::error::Result;
-use crate::geometry::Surfels;
+use crate::geometry::{Curvature, Surfels, tangents};
+use glam::{DMat2, DMat3, DVec2, DVec3};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -11,19 +12,25 @@ use std::sync::atomic::{AtomicU64, Ordering};
 const NEIGHBOURS: usize = 10;
 /// Cosine above which normals are of the same side of a surface.
 const SAME_SIDE: f64 = 0.0;
+/// Weight of flatness in the directions of no neighbour, relative to that of a neighbour.
+const FLATNESS: f64 = 1e-3;
 /// Number of surfels per task.
 const PIECE: usize = 1 << 12;
 
-/// The second largest curvature at every surfel towards one of its neighbours, 1 / the positions' unit: a single stray one does not bend the
-/// surface. 0 at two-sided surfels, and without two neighbours of the same side.
-pub(super) fn curvatures(surfels: &Surfels, sites: &Sites, progress: &dyn Progress) -> Result<Vec<f32>> {
-    let mut curvatures = vec![0.0; surfels.len()];
+/// The curvature at every surfel: the shape operator nearest to the curvatures towards its neighbours. Unknown at two-sided surfels.
+pub(super) fn curvatures(
+    surfels: &Surfels,
+    sites: &Sites,
+    progress: &dyn Progress,
+) -> Result<Vec<Curvature>> {
+    let mut curvatures = vec![Curvature::default(); surfels.len()];
     let (done, total) = (AtomicU64::new(0), surfels.len() as u64);
     curvatures.par_chunks_mut(PIECE).enumerate().try_for_each(|(piece, curvatures)| {
         let first = piece * PIECE;
-        curvatures.iter_mut().zip(first..).for_each(|(curvature, i)| {
-            *curvature = curvature_at(surfels, sites, i).unwrap_or_default();
-        });
+        curvatures
+            .iter_mut()
+            .zip(first..)
+            .for_each(|(curvature, i)| *curvature = curvature_at(surfels, sites, i));
         let piece = curvatures.len() as u64;
         progress.at("estimating curvatures", done.fetch_add(piece, Ordering::Relaxed) + piece, total);
         progress.check_cancelled()
@@ -31,24 +38,35 @@ pub(super) fn curvatures(surfels: &Surfels, sites: &Sites, progress: &dyn Progre
     Ok(curvatures)
 }
 
-fn curvature_at(surfels: &Surfels, sites: &Sites, i: usize) -> Option<f32> {
+fn curvature_at(surfels: &Surfels, sites: &Sites, i: usize) -> Curvature {
     let normal = surfels.normals[i].as_dvec3();
     let is_two_sided = |i: usize| surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[i]);
     if is_two_sided(i) {
-        return None;
+        return Curvature::default();
     }
     let site = sites.of_point[i];
+    let basis = tangents(normal);
     let circles = sites.nearest(site, NEIGHBOURS).filter_map(|other| {
         let point = sites.point[other as usize] as usize;
         let is_same_side = !is_two_sided(point) && surfels.normals[point].as_dvec3().dot(normal) > SAME_SIDE;
         let offset = (sites.at(other) - sites.at(site)).as_dvec3();
         // Through the centre and the neighbour, tangent to the disc.
-        is_same_side.then(|| -2.0 * offset.dot(normal) / offset.length_squared())
+        let circle = -2.0 * offset.dot(normal) / offset.length_squared();
+        let tangent = DVec2::from_array(basis.map(|axis| axis.dot(offset))).try_normalize()?;
+        is_same_side.then_some((tangent, circle))
     });
-    let second = |[most, second]: [f64; 2], circle: f64| [most.max(circle), second.max(most.min(circle))];
-    let [_, curvature] =
-        circles.fold([f64::NEG_INFINITY; 2], second).map(|circle| circle / f64::from(sites.unit));
-    Some(curvature as f32).filter(|curvature| curvature.is_finite())
+    Curvature::of_shape_operator(fit(circles) * (1.0 / f64::from(sites.unit)))
+}
+
+/// The shape operator S with the least squares of tᵀ S t − κ, of unit tangents t and curvatures κ in their directions.
+fn fit(circles: impl Iterator<Item = (DVec2, f64)>) -> DMat2 {
+    let flat = (DMat3::from_diagonal(DVec3::splat(FLATNESS)), DVec3::ZERO);
+    let (matrix, right) = circles.fold(flat, |(matrix, right), (t, curvature)| {
+        let row = DVec3::new(t.x * t.x, 2.0 * t.x * t.y, t.y * t.y);
+        (matrix + DMat3::from_cols(row * row.x, row * row.y, row * row.z), right + curvature * row)
+    });
+    let [xx, xy, yy] = (matrix.inverse() * right).to_array();
+    DMat2::from_cols_array(&[xx, xy, xy, yy])
 }
 
 #[cfg(test)]
@@ -57,7 +75,7 @@ mod tests {
     use glam::Vec3;
 
     /// The curvatures of `count` points of a surface, given by the position and normal at parameters from 0 to 1.
-    fn of(count: usize, surface: impl Fn(f32, f32) -> [Vec3; 2]) -> Vec<f32> {
+    fn of(count: usize, surface: impl Fn(f32, f32) -> [Vec3; 2]) -> Vec<Curvature> {
         let at = |i: usize| surface((i as f32 + 0.5) / count as f32, (i as f32 * 0.618_034).fract());
         let surfels = Surfels {
             positions: (0..count).map(|i| at(i)[0]).collect(),
@@ -69,46 +87,59 @@ mod tests {
         curvatures(&surfels, &sites, &()).unwrap()
     }
 
-    fn middle(mut values: Vec<f32>) -> f32 {
-        values.sort_by(f32::total_cmp);
+    fn middle(values: impl Iterator<Item = f64>) -> f64 {
+        let mut values: Vec<f64> = values.collect();
+        values.sort_by(f64::total_cmp);
         values[values.len() / 2]
     }
 
     #[test]
     fn spheres_of_any_size_have_the_inverse_of_their_radius() {
         for radius in [1e-20_f32, 0.1, 1.0, 1e15] {
-            for outwards in [1.0, -1.0] {
-                let sphere = |s: f32, t: f32| {
+            let sphere = |outwards: f32| {
+                of(4000, move |s, t| {
                     let (z, angle) = (2.0 * s - 1.0, t * std::f32::consts::TAU);
                     let unit =
                         Vec3::new((1.0 - z * z).sqrt() * angle.cos(), (1.0 - z * z).sqrt() * angle.sin(), z);
                     [radius * unit, outwards * unit]
-                };
-                let found = of(4000, sphere);
-                let wrong = |k: &&f32| (**k * radius * outwards - 1.0).abs() > 0.01;
-                assert_eq!(found.iter().filter(wrong).count(), 0, "{radius} {outwards}");
-            }
+                })
+            };
+            let wrong = |k: &&Curvature| {
+                [DVec2::X, DVec2::Y].iter().any(|t| (k.along(*t) * f64::from(radius) - 1.0).abs() > 0.02)
+            };
+            assert_eq!(sphere(1.0).iter().filter(wrong).count(), 0, "{radius}");
+            assert!(sphere(-1.0).iter().all(|k| *k == Curvature::default()), "{radius}");
         }
     }
 
     #[test]
-    fn of_a_cylinder_and_a_saddle_it_is_the_larger_principal_one() {
+    fn a_cylinder_and_a_saddle_bend_away_along_one_direction() {
         let cylinder = |s: f32, t: f32| {
             let normal = Vec3::new((3.0 * t).cos(), (3.0 * t).sin(), 0.0);
             [normal + 2.0 * s * Vec3::Z, normal]
         };
-        assert!((middle(of(4000, cylinder)) - 1.0).abs() < 0.1);
+        let found = of(4000, cylinder);
+        let normals: Vec<Vec3> =
+            (0..4000).map(|i| cylinder(0.0, (i as f32 * 0.618_034).fract())[1]).collect();
+        let along = |direction: Vec3, i: usize| {
+            let t = tangents(normals[i].as_dvec3()).map(|axis| axis.dot(direction.as_dvec3()));
+            found[i].along(DVec2::from_array(t).normalize())
+        };
+        assert!(middle((0..4000).map(|i| along(Vec3::Z, i).abs())) < 0.05);
+        assert!((middle((0..4000).map(|i| along(normals[i].cross(Vec3::Z), i))) - 1.0).abs() < 0.05);
         // z = −3 x² / 2 + y² / 2 near the origin: curvatures 3 and −1.
         let saddle = |s: f32, t: f32| {
             let (x, y) = (0.02 * (s - 0.5), 0.02 * (t - 0.5));
             [Vec3::new(x, y, -1.5 * x * x + 0.5 * y * y), Vec3::new(3.0 * x, -y, 1.0).normalize()]
         };
-        assert!((middle(of(1000, saddle)) - 3.0).abs() < 0.3);
+        let found = of(1000, saddle);
+        assert!((middle(found.iter().map(|k| k.along(DVec2::X))) - 3.0).abs() < 0.1);
+        assert!((middle(found.iter().map(|k| k.along(DVec2::Y))) + 1.0).abs() < 0.1);
     }
 
     #[test]
     fn planes_have_none() {
-        assert!(of(500, |s, t| [Vec3::new(s, t, 0.0), Vec3::Z]).iter().all(|k| *k == 0.0));
+        assert!(of(500, |s, t| [Vec3::new(s, t, 0.0), Vec3::Z]).iter().all(|k| *k == Curvature::default()));
     }
 
     #[test]
@@ -117,6 +148,12 @@ mod tests {
             let up = if ((s * 1000.0) as u32).is_multiple_of(2) { 1.0 } else { -1.0 };
             [Vec3::new(s, t, 1e-3 * up), up * Vec3::Z]
         };
-        assert!(of(1000, sheet).iter().all(|k| *k == 0.0));
+        assert!(of(1000, sheet).iter().all(|k| *k == Curvature::default()));
+    }
+
+    #[test]
+    fn neighbours_in_one_direction_leave_the_others_flat() {
+        let fitted = Curvature::of_shape_operator(fit([(DVec2::X, 2.0), (DVec2::NEG_X, 2.0)].into_iter()));
+        assert!((fitted.along(DVec2::X) - 2.0).abs() < 0.02 && fitted.along(DVec2::Y).abs() < 0.02);
     }
 }

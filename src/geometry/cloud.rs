@@ -1,7 +1,7 @@
 //! Point clouds as files store them: positions, and optional attributes.
 
 use super::morton::order;
-use super::{Clips, Colours, Ellipse, Materials, Surfels, Texture, Weights};
+use super::{Clips, Colours, Curvature, Ellipse, Materials, Surfels, Texture, Weights};
 use glam::{DVec3, Vec3};
 
 /// Points as a structure of arrays; every array that is present has one entry per point.
@@ -18,7 +18,7 @@ pub struct Cloud {
     /// Shapes of elliptical discs; need radii and normals.
     pub ellipses: Option<Vec<Ellipse>>,
     /// Curvatures: see [`Surfels::curvatures`](super::Surfels::curvatures); need normals.
-    pub curvatures: Option<Vec<f32>>,
+    pub curvatures: Option<Vec<Curvature>>,
     /// Points whose normals have no known side.
     pub two_sided: Option<Vec<bool>>,
     /// Clips of discs at sharp edges; need normals.

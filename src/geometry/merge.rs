@@ -4,7 +4,7 @@ use super::join::{
     circles, common_origin, common_view, join, join_clips, join_colours, join_corners, join_materials,
     join_textures,
 };
-use super::{Cloud, Model, Primitives, Surfels, View, Weights};
+use super::{Cloud, Curvature, Model, Primitives, Surfels, View, Weights};
 use crate::error::{Error, Result};
 use glam::{DVec3, Vec3};
 
@@ -140,7 +140,11 @@ impl Cloud {
             colours: join_colours(parts, albedo),
             // Before the normals, which circles are made of.
             ellipses: join(parts, |part| part.ellipses.take(), circles),
-            curvatures: join(parts, |part| part.curvatures.take(), |part| vec![0.0; part.len()]),
+            curvatures: join(
+                parts,
+                |part| part.curvatures.take(),
+                |part| vec![Curvature::default(); part.len()],
+            ),
             clips: join_clips(parts),
             weights: Weights::join(parts.iter_mut().map(|part| part.weights.take())),
             two_sided: join(parts, |part| part.two_sided.take(), |part| vec![false; part.len()]),

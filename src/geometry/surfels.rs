@@ -1,6 +1,6 @@
 //! Surfels: oriented discs that sample a surface.
 
-use super::{Clips, Materials, Texture, Weights};
+use super::{Clips, Curvature, Materials, Texture, Weights};
 use crate::error::{Error, Result};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
@@ -21,9 +21,9 @@ pub struct Surfels {
     pub radii: Vec<f32>,
     /// Shapes of the discs; `None` if all are circles.
     pub ellipses: Option<Vec<Ellipse>>,
-    /// Largest normal curvatures of the surface at the centres, 1 / the positions' unit, above 0 where it bends away from the normal; 0 of
-    /// unknown ones, `None` if all are unknown. With coverage, discs end where a convex surface turns away from the eye.
-    pub curvatures: Option<Vec<f32>>,
+    /// Normal curvatures of the surface at the centres; `None` if all are unknown. With coverage, discs end where a convex surface turns away
+    /// from the eye.
+    pub curvatures: Option<Vec<Curvature>>,
     /// Surfels that are two-sided, so that neither side is the back; `None` if there are none.
     pub two_sided: Option<Vec<bool>>,
     /// Clip lines of discs at sharp edges; `None` if all are whole.

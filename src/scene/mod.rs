@@ -18,16 +18,17 @@ mod update;
 mod weights;
 
 use crate::error::{Error, Result};
-use crate::geometry::{Bounds, Colours, Ellipse, Parts, Primitives, Surfels, Texture};
+use crate::geometry::{Bounds, Colours, Curvature, Ellipse, Parts, Primitives, Surfels, Texture};
 use crate::vk::shaders::{Resource, resource};
 use crate::vk::{Binding, Buffer, Device, Uploads};
+use bytemuck::{Pod, Zeroable};
 use chunks::{chunks, step};
 pub(crate) use clips::ClipChunk;
 use clips::ClipStream;
 pub(crate) use clusters::CLUSTER;
 use clusters::Clusters;
 pub(crate) use external::ExternalBuffers;
-use glam::{DVec3, Vec3, Vec4};
+use glam::{DVec3, Vec3};
 pub use instance::{Instance, Instances};
 pub(crate) use materials::MaterialStream;
 pub use order::Order;
@@ -397,10 +398,18 @@ fn warn_of(invalid: usize, count: usize) {
     );
 }
 
-/// Normals, each followed by a curvature, or by 0, an unknown one.
-fn bent_normals(normals: &[Vec3], curvatures: Option<&[f32]>) -> Vec<Vec4> {
-    let curvature = |i: usize| curvatures.map_or(0.0, |curvatures| curvatures[i]);
-    normals.iter().enumerate().map(|(i, normal)| normal.extend(curvature(i))).collect()
+/// A normal, and the curvature of the surface.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct BentNormal {
+    normal: Vec3,
+    curvature: Curvature,
+}
+
+/// Normals with curvatures, or with unknown ones.
+fn bent_normals(normals: &[Vec3], curvatures: Option<&[Curvature]>) -> Vec<BentNormal> {
+    let curvature = |i: usize| curvatures.map(|curvatures| curvatures[i]).unwrap_or_default();
+    normals.iter().zip(0..).map(|(&normal, i)| BentNormal { normal, curvature: curvature(i) }).collect()
 }
 
 /// Radii: negative for two-sided surfels, and 0 for invalid ones.

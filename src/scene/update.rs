@@ -3,7 +3,7 @@
 use super::live::check_bounds;
 use super::{ColourStream, Scene, Stream, bent_normals, largest};
 use crate::error::{Error, Result};
-use crate::geometry::{Bounds, Colours, Ellipse, Surfels, is_unit};
+use crate::geometry::{Bounds, Colours, Curvature, Ellipse, Surfels, is_unit};
 use crate::vk::Uploads;
 use bytemuck::NoUninit;
 use glam::Vec3;
@@ -19,7 +19,7 @@ pub struct Changes<'a> {
     /// Unit normals.
     pub normals: Option<&'a [Vec3]>,
     /// Curvatures, together with `normals`, in a scene that has curvatures. New normals without curvatures have unknown ones.
-    pub curvatures: Option<&'a [f32]>,
+    pub curvatures: Option<&'a [Curvature]>,
     /// Radii.
     pub radii: Option<&'a [f32]>,
     /// Which radii are of two-sided surfels, together with `radii`, in a scene that has two-sided surfels.

@@ -4,8 +4,8 @@ use crate::support::gpu::{Renderers, assert_silent, device};
 use crate::support::if_whole;
 use crate::support::sampling::Random;
 use crate::support::scenes::{Case, cases};
-use glam::{DVec3, Vec3};
-use surfel::geometry::{Camera, Clip, Ellipse, Surfels, Weights};
+use glam::{DMat2, DVec3, Vec3};
+use surfel::geometry::{Camera, Clip, Curvature, Ellipse, Surfels, Weights};
 use surfel::settings::methods::{Method, object_ewa, sprites};
 use surfel::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
 use surfel::settings::{Alpha, Cull, Widen};
@@ -222,9 +222,13 @@ fn with_axes(settings: impl Fn(&Case) -> Settings) -> Vec<Case> {
 }
 
 /// Random curvatures, some below 0, of surfaces that turn away within a few radii.
-fn curvatures(radii: &[f32]) -> Vec<f32> {
+fn curvatures(radii: &[f32]) -> Vec<Curvature> {
     let mut random = Random(77);
-    radii.iter().map(|radius| (1.2 * random.unit() - 0.2) as f32 / radius).collect()
+    let mut operator = || {
+        let [x, off, y] = [(); 3].map(|()| 1.2 * random.unit() - 0.2);
+        DMat2::from_cols_array(&[x, off, off, y])
+    };
+    radii.iter().map(|radius| Curvature::of_shape_operator(operator() * (1.0 / f64::from(*radius)))).collect()
 }
 
 /// Random normalization weights; every third surfel has one per corner.

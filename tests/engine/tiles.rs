@@ -3,9 +3,9 @@
 use crate::frames::{SIZE, agrees, all_outputs, camera, largest_difference, sphere};
 use crate::support::gpu::{assert_silent, device, render};
 use crate::support::if_whole;
-use glam::Vec3;
+use glam::{DMat2, Vec3};
 use surfel::frame::Splat;
-use surfel::geometry::{Colours, Surfels};
+use surfel::geometry::{Colours, Curvature, Surfels};
 use surfel::picture::Picture;
 use surfel::settings::methods::Method;
 use surfel::settings::splatting::{Splatting, Visibility};
@@ -39,7 +39,10 @@ fn a_picture_may_be_larger_than_a_storage_buffer() {
 /// Subgroups; shared memory for as many lanes as subgroups of any GPU have; storage buffers.
 #[test]
 fn every_kind_of_tile_workgroup_renders_the_same_picture() {
-    let surfels = Surfels { curvatures: Some(vec![1.0; 5_000]), ..sphere(5_000) };
+    let surfels = Surfels {
+        curvatures: Some(vec![Curvature::of_shape_operator(DMat2::IDENTITY); 5_000]),
+        ..sphere(5_000)
+    };
     let axis = Splatting { visibility: Visibility::Axis, ..Splatting::default() };
     let frames = [
         Settings::default(),

@@ -75,7 +75,7 @@ fn certain_and_possible(solid: &Ellipse, offset: DVec2) -> [Mask; 2] {
         let undecided = solid.is_undecided(at, margin.abs());
         let within = if undecided { margin > 0.0 } else { solid.rim(at) <= solid.cutoff };
         let [clip, turn] = distances(solid, at);
-        within && clip + margin >= 0.0 && turn + margin + margin.signum() * solid.turn_error >= 0.0
+        within && clip + margin >= 0.0 && turn + margin + margin.signum() * solid.turn_error() >= 0.0
     };
     let [mut certain, mut possible] = [-tolerance, tolerance]
         .map(|margin| bits((0..Mask::BITS).filter(|&k| inside(offset + sample(k), margin))));

@@ -1,7 +1,7 @@
 //! The outline of a splat's filtered kernel, and the kernel's weight.
 
 use super::coverage::SOLID;
-use super::footprint::ScreenClip;
+use super::footprint::{ScreenClip, TurnLine};
 use super::{Projector, Splat};
 use crate::settings::splatting::{Footprint, Kernel};
 use crate::settings::{Alpha, Widen};
@@ -54,9 +54,7 @@ pub(super) struct Ellipse {
     /// See [`Projector::clip_reach`].
     pub clip_reach: f64,
     /// See [`Splat::turn`].
-    pub turn: Option<DVec3>,
-    /// Error of that line by rounding, px.
-    pub turn_error: f64,
+    pub turn: Option<TurnLine>,
 }
 
 impl Ellipse {
@@ -113,7 +111,6 @@ impl Ellipse {
             square_to_kernel: square_to_kernel(splat, DVec2::from_angle(angle)),
             clip_reach: projector.clip_reach(),
             turn: splat.turn,
-            turn_error: splat.turn.map_or(0.0, |_| turn_error(splat)),
         }
     }
 
@@ -150,7 +147,12 @@ impl Ellipse {
 
     /// Signed distance of a pixel position to the part where the surface has turned away, px: below 0 in that part.
     pub fn turn_distance(&self, at: DVec2) -> f64 {
-        self.turn.map_or(f64::INFINITY, |line| line.dot(DVec3::new(1.0, at.x, at.y)))
+        self.turn.map_or(f64::INFINITY, |turn| turn.distance(at))
+    }
+
+    /// Its error by rounding, px.
+    pub fn turn_error(&self) -> f64 {
+        self.turn.map_or(0.0, |turn| turn.error)
     }
 
     /// Whether the outline is the ellipse itself.
@@ -290,12 +292,6 @@ fn visible_variance(projector: &Projector) -> impl Fn(f64) -> f64 {
     }
 }
 
-/// Error of a splat's turn line by rounding, px: that of the depth of its plane, by the slope of the plane.
-fn turn_error(splat: &Splat) -> f64 {
-    let depth = splat.plane.dot(DVec3::new(1.0, splat.centre.x, splat.centre.y));
-    ROUNDING * (depth / DVec2::new(splat.plane.y, splat.plane.z).length()).abs()
-}
-
 /// Angle by which rounding may turn the sides of a parallelogram with this relative difference of its variances, rad.
 fn axis_error(anisotropy: f64) -> f64 {
     let past = anisotropy - LEAST_ANISOTROPY;
@@ -398,7 +394,6 @@ mod tests {
             square_to_kernel: DMat2::IDENTITY,
             clip_reach: 0.0,
             turn: None,
-            turn_error: 0.0,
         };
         for y in [17.0, 20.0, 22.5] {
             let (low, high) = ellipse.span(y, 2.0).unwrap();

@@ -105,7 +105,7 @@ impl ErrorModel<'_> {
                 let Some((depth, depth_error, certain)) = self.depth_in_volume(splat, hit.at) else { return };
                 // Fragments exist half a pixel beyond the turn line.
                 let [beyond, unsure] =
-                    [hit.turn_distance + HALF_PIXEL, CUTOFF_TOLERANCE + ellipse.turn_error];
+                    [hit.turn_distance + HALF_PIXEL, CUTOFF_TOLERANCE + ellipse.turn_error()];
                 if beyond < -unsure {
                     return;
                 }

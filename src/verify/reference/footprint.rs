@@ -6,7 +6,7 @@ use super::ellipse::Ellipse;
 use super::image::Disc;
 use super::shading::{Shine, linear, lit};
 use crate::error::Result;
-use crate::geometry::{Camera, Clip, ClipLine, Colours, Surfels, square_axis};
+use crate::geometry::{Camera, Clip, ClipLine, Colours, Curvature, Surfels, square_axis, tangents};
 use crate::settings::splatting::{Kernel, Normalization, Shade};
 use crate::settings::{Alpha, Cull, Settings, Shading};
 use glam::{DMat2, DMat3, DVec2, DVec3};
@@ -24,8 +24,8 @@ pub struct Surfel {
     pub major: DVec3,
     /// The shorter semi-axis divided by the longer: 1 for a circle.
     pub aspect: f64,
-    /// Largest normal curvature of the surface, above 0 where it bends away from the normal; 0 if unknown.
-    pub curvature: f64,
+    /// Normal curvatures of the surface, in the basis of `tangents`.
+    pub curvature: Curvature,
     /// Whether both sides are fronts.
     pub two_sided: bool,
     /// Normalization weights at the corners −u −v, +u −v, −u +v, +u +v of the square around the disc, with u = `major`
@@ -58,7 +58,7 @@ impl Surfel {
             major: square_axis(surfels.normals[index], ellipse.map(|ellipse| ellipse.major)),
             aspect: ellipse.map_or(1.0, |ellipse| ellipse.aspect.into()),
             weights: weights.map(f64::from),
-            curvature: surfels.curvatures.as_ref().map_or(0.0, |curvatures| curvatures[index].into()),
+            curvature: surfels.curvatures.as_ref().map(|curvatures| curvatures[index]).unwrap_or_default(),
             two_sided: surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[index]),
             colour,
             clip: surfels.clips.as_ref().and_then(|clips| clips.get(index)).copied(),
@@ -102,10 +102,9 @@ pub struct Splat {
     pub dual: bool,
     /// Clip lines on the screen, if the surfel has any.
     pub clip: Option<ScreenClip>,
-    /// Turn line: signed distance, px, to the line beyond which a convex surface has turned away from the eye, at pixel
-    /// position (x, y): `turn · (1, x, y)`, above 0 on the kept side. Samples beyond it are not covered, and fragments end
+    /// Line beyond which the surface has turned away from the eye: samples beyond it are not covered, and fragments end
     /// half a pixel beyond it. `None` where the surface does not turn away.
-    pub turn: Option<DVec3>,
+    pub turn: Option<TurnLine>,
     /// Whether its surfel faces away and is not two-sided.
     pub back: bool,
     /// Whether rounding does not decide if [`Cull::Auto`] drops it.
@@ -132,6 +131,24 @@ impl ScreenClip {
     }
 }
 
+/// Line on the screen beyond which a convex surface has turned away from the eye.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TurnLine {
+    /// Signed distance at pixel position (x, y), px: `line · (1, x, y)`, above 0 on the kept side.
+    pub line: DVec3,
+    /// Error of the distance by rounding, px.
+    pub error: f64,
+}
+
+impl TurnLine {
+    /// Signed distance at a pixel position, px; below 0 where the surface has turned away.
+    pub fn distance(&self, at: DVec2) -> f64 {
+        self.line.dot(DVec3::new(1.0, at.x, at.y))
+    }
+}
+
+/// Error of positions, normals and directions by rounding to float32, relative.
+const ROUNDING: f64 = 4.0 / (1 << 24) as f64;
 /// Least `1 − (F |g| / w)²` of a drawn splat: closer to the eye plane, float32 cannot locate the ellipse.
 const LEAST_CLEARANCE: f64 = 1e-3;
 /// Least `√|V|` of a drawn splat, px²: the float32 weight of a smaller one may be 0.
@@ -213,17 +230,7 @@ impl Projector {
             square,
             dual: image.dual,
             clip: surfel.clip.map(|clip| self.screen_clip(&clip, centre, normal)),
-            turn: (facing < 0.0)
-                .then(|| {
-                    self.turn_line(
-                        surfel.curvature,
-                        secant,
-                        (centre - self.eye()).length(),
-                        distance,
-                        image.plane,
-                    )
-                })
-                .flatten(),
+            turn: (facing < 0.0).then(|| self.turn_line(surfel, centre, image.plane)).flatten(),
             back: facing >= 0.0 && !surfel.two_sided,
             certain: true,
         };
@@ -237,30 +244,41 @@ impl Projector {
         }
     }
 
-    /// Line on the screen beyond which a surface of this curvature has turned away from the eye: where the tangent plane of a
-    /// front-facing surfel is [`TURN_DEPTH`] below the centre. `from_eye` and `distance` are those of the centre, `plane` as
-    /// in [`Splat`].
-    fn turn_line(
-        &self,
-        curvature: f64,
-        secant: f64,
-        from_eye: f64,
-        distance: f64,
-        plane: DVec3,
-    ) -> Option<DVec3> {
+    /// Line on the screen beyond which the surface has turned away from the eye: where the tangent plane of a front-facing
+    /// surfel is [`TURN_DEPTH`] below the centre. `centre` is in eye space, `plane` as in [`Splat`].
+    fn turn_line(&self, surfel: &Surfel, centre: DVec3, plane: DVec3) -> Option<TurnLine> {
         let Settings { alpha, splatting, .. } = &self.settings;
         let shapes = splatting.footprint.is_in_tangent_plane() && splatting.kernel == Kernel::Gaussian;
-        if !(*alpha == Alpha::Coverage && shapes && curvature > 0.0) {
+        if *alpha != Alpha::Coverage || !shapes {
             return None;
         }
-        let below = TURN_DEPTH / (secant * curvature);
-        let above = if self.depth.perspective {
-            plane - DVec3::X / (distance * (1.0 + below / from_eye))
-        } else {
-            DVec3::X * (distance + below) - plane
+        let perspective = self.depth.perspective;
+        let from_eye = (centre - self.eye()).length();
+        let away = if perspective { (centre - self.eye()) / from_eye } else { DVec3::Z * self.depth.forward };
+        let ray = self.to_world(away);
+        let [x, y] = tangents(surfel.normal).map(|axis| axis.dot(ray));
+        // Of the tangent; nearly frontal discs hardly determine its direction.
+        let sine = DVec2::new(x, y).length();
+        let tangent = DVec2::new(x, y).try_normalize()?;
+        let curvature = surfel.curvature.along(tangent);
+        if curvature <= 0.0 {
+            return None;
+        }
+        let below = -TURN_DEPTH * surfel.normal.dot(ray) / curvature;
+        let distance = self.distance(centre);
+        let above = match perspective {
+            true => plane - DVec3::X / (distance * (1.0 + below / from_eye)),
+            false => DVec3::X * (distance + below) - plane,
         };
         let slope = DVec2::new(above.y, above.z).length();
-        (slope > 0.0).then(|| above / slope)
+        // Of the curvature: of its direction, and of its terms.
+        let swing = 2.0 * (1.0 - surfel.curvature.ratio()) / sine;
+        let error = ROUNDING * surfel.curvature.largest() * (4.0 + swing);
+        // Of the depth below the centre: below / (1 ± error) differs by less than twice that.
+        let below_error = 2.0 * below * error / (curvature + error);
+        let depth = if perspective { 1.0 / distance } else { distance };
+        let relative = if perspective { below_error / (from_eye + below) } else { below_error / distance };
+        (slope > 0.0).then(|| TurnLine { line: above / slope, error: depth * (ROUNDING + relative) / slope })
     }
 
     /// The splat of the surfel moved away by ε along the camera's axis (ren2002 §5.1), for the visibility pass of

@@ -39,7 +39,7 @@ mod visibility;
 pub use compare::{Comparison, Expected, Failure, compare};
 pub use error_bounds::{Admissible, ErrorBounds};
 pub use filter::filtered;
-pub use footprint::{Culled, ScreenClip, Splat, Surfel, footprint};
+pub use footprint::{Culled, ScreenClip, Splat, Surfel, TurnLine, footprint};
 pub use normalize::Value;
 pub use projected_scene::Counts;
 pub use projector::Projector;

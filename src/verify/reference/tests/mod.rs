@@ -7,7 +7,7 @@ mod kinds;
 mod passes;
 
 use super::*;
-use crate::geometry::{Clip, ClipLine, Clips, Colours, Ellipse, Surfels};
+use crate::geometry::{Clip, ClipLine, Clips, Colours, Curvature, Ellipse, Surfels};
 use crate::settings::{Alpha, Cull, Shading, Widen};
 use glam::{DMat2, DVec2, DVec3, DVec4};
 
@@ -42,7 +42,7 @@ fn disc(position: DVec3, normal: DVec3, radius: f64) -> Surfel {
         two_sided: false,
         weights,
         colour: None,
-        curvature: 0.0,
+        curvature: Curvature::default(),
         clip: None,
     }
 }
