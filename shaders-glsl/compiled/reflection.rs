@@ -275,18 +275,8 @@ pub static FILTER_COMPUTE: Module = Module {
     name: "filter_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("filter_compute.spv"),
-    constants: &[66],
-    resources: &[(&resource::FRAME, false), (&resource::IMAGE_OUTPUT, true), (&resource::FILTERED_ROWS, true)],
-    push: 0,
-};
-
-/// The compute stage of `shaders-glsl/filter.glsl`.
-pub static FILTER_COLUMNS_COMPUTE: Module = Module {
-    name: "filter_columns_compute",
-    stage: ShaderStageFlags::COMPUTE,
-    spirv: spirv!("filter_columns_compute.spv"),
     constants: &[6, 31, 66],
-    resources: &[(&resource::FRAME, false), (&resource::IMAGE_OUTPUT, true), (&resource::FILTERED_ROWS, true)],
+    resources: &[(&resource::FRAME, false), (&resource::IMAGE_OUTPUT, true), (&resource::FILTERED, true)],
     push: 0,
 };
 
@@ -1357,9 +1347,9 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `filtered_rows`, first in `shaders-glsl/filter.glsl`.
-    pub static FILTERED_ROWS: Resource = Resource {
-        name: "filtered_rows",
+    /// `filtered`, first in `shaders-glsl/filter.glsl`.
+    pub static FILTERED: Resource = Resource {
+        name: "filtered",
         set: 1,
         binding: 23,
         kind: DescriptorType::STORAGE_IMAGE,

@@ -34,12 +34,12 @@ pub struct Composite {
 }
 
 impl CompositeKind {
-    /// Resources of a frame's targets that the shader reads.
-    fn resources(&self) -> Vec<(&'static shaders::Resource, Resource)> {
+    /// Resources of a frame's targets that the shader reads, the `picture` among them.
+    fn resources(&self, picture: Resource) -> Vec<(&'static shaders::Resource, Resource)> {
         let normal = self.normal.map(|_| (&resource::NORMAL_IMAGE, Resource::Normal));
         let depth = self.reversed.map(|_| (&resource::DEPTH_IMAGE, Resource::Depth));
         let id = self.id.map(|_| (&resource::ID_IMAGE, Resource::Id));
-        let image = Some((&resource::PICTURE_IMAGE, Resource::Image));
+        let image = Some((&resource::PICTURE_IMAGE, picture));
         [image, normal, depth, id].into_iter().flatten().collect()
     }
 }
@@ -47,7 +47,8 @@ impl CompositeKind {
 impl Composite {
     /// Creates the pass for the host's pass `within`.
     pub fn new(device: &Arc<Device>, kind: CompositeKind, within: &Within) -> Result<Self> {
-        let layout = SetLayout::of(device, kind.resources().into_iter().map(|(resource, _)| resource))?;
+        let layout =
+            SetLayout::of(device, kind.resources(Resource::Image).into_iter().map(|(resource, _)| resource))?;
         let fragment = match (kind.normal, kind.id) {
             (None, None) => &shaders::COMPOSITE_FRAGMENT,
             (Some(_), None) => &shaders::COMPOSITE_NORMALS_FRAGMENT,
@@ -69,7 +70,8 @@ impl Composite {
     /// Descriptor set of a picture, which must outlive it.
     pub fn view(&self, device: &Arc<Device>, targets: &RenderTargets) -> Result<DescriptorSet> {
         let binding = |(resource, target)| Some((resource, targets.image(target).map(Binding::Sampled)?));
-        let bindings: Vec<_> = self.kind.resources().into_iter().filter_map(binding).collect();
+        let bindings: Vec<_> =
+            self.kind.resources(targets.final_image()).into_iter().filter_map(binding).collect();
         DescriptorSet::new(device, &bindings)
     }
 

@@ -125,6 +125,8 @@ pub enum Domain {
     PixelsOfTriangles,
     /// One invocation per pixel.
     Pixels,
+    /// One invocation per strip of a column of pixels.
+    Strips,
     /// One workgroup per tile.
     Tiles,
     /// Elements of a level, as the steps of the pass define.
@@ -165,7 +167,7 @@ impl Domain {
             Self::Clusters => Scope::Clusters,
             Self::Lines | Self::PixelsOfLines => Scope::Lines,
             Self::Triangles | Self::LargeTriangles | Self::PixelsOfTriangles => Scope::Triangles,
-            Self::Pixels | Self::Tiles | Self::Level | Self::FullScreen => Scope::View,
+            Self::Pixels | Self::Strips | Self::Tiles | Self::Level | Self::FullScreen => Scope::View,
         }
     }
 }

@@ -30,6 +30,14 @@ pub fn grid_over_pixels([width, height]: [u32; 2]) -> [u32; 3] {
     [width.div_ceil(PIXEL_GROUP[0]), height.div_ceil(PIXEL_GROUP[1]), 1]
 }
 
+/// Pixels of a strip (`filter.glsl`).
+const STRIP: u32 = 16;
+
+/// Workgroups for an invocation per strip of a column.
+fn grid_over_strips([width, height]: [u32; 2]) -> [u32; 3] {
+    [width.div_ceil(WORKGROUP as u32), height.div_ceil(STRIP), 1]
+}
+
 /// Workgroups for so many invocations, in rows: for shaders that index by both coordinates.
 pub fn grid_over(invocations: u64) -> [u32; 3] {
     let workgroups = invocations.div_ceil(WORKGROUP) as u32;
@@ -162,6 +170,9 @@ impl PreparedPass {
                         let slices = [slice, self.slices(frame)];
                         let hierarchy = splats.hierarchy(slices, frame.most_steps(), frame.number);
                         enc.dispatch(pipeline, &sets, &hierarchy, [columns, rows, 1]);
+                    }
+                    (Domain::Strips, _) => {
+                        enc.dispatch(pipeline, &sets, &(), grid_over_strips(frame.targets.size));
                     }
                     _ => enc.dispatch(pipeline, &sets, &(), grid_over_pixels(frame.targets.size)),
                 }

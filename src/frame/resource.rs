@@ -39,8 +39,8 @@ pub enum Resource {
     Pushed,
     /// Linear colour and α, or the quantity that is shaded.
     Image,
-    /// The picture filtered along rows, premultiplied by α, if pixels are filtered.
-    FilteredRows,
+    /// The filtered image, over the background, if pixels are filtered.
+    Filtered,
     /// Unit normals, if requested.
     Normal,
     /// Eye-space depths, if requested.
@@ -75,7 +75,7 @@ impl Resource {
             Self::Pulled => "pulled",
             Self::Pushed => "pushed",
             Self::Image => "image",
-            Self::FilteredRows => "filtered_rows",
+            Self::Filtered => "filtered",
             Self::Normal => "normal",
             Self::Depth => "depth",
             Self::Id => "id",

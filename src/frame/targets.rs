@@ -105,7 +105,7 @@ impl Resource {
             Self::HostDepth => &[&resource::HOST_DEPTH],
             Self::IncompleteFrame => &[&resource::INCOMPLETE_FRAME],
             Self::Image => &[&resource::IMAGE_OUTPUT],
-            Self::FilteredRows => &[&resource::FILTERED_ROWS],
+            Self::Filtered => &[&resource::FILTERED],
             Self::Normal => &[&resource::NORMAL_OUTPUT],
             Self::Depth => &[&resource::DEPTH_OUTPUT],
             Self::Id => &[&resource::ID_OUTPUT],
@@ -121,13 +121,13 @@ pub fn describe(variant: &Variant) -> Vec<TargetDescription> {
         (None, Rasterizer::Draw) => raster_targets(variant),
         (None, Rasterizer::Compute) => compute_targets(variant),
     };
-    std::iter::once(filtered_rows(variant)).chain(list).flatten().collect()
+    std::iter::once(filtered(variant)).chain(list).flatten().collect()
 }
 
-/// The picture filtered along rows.
-fn filtered_rows(variant: &Variant) -> Option<TargetDescription> {
-    let rows = stored(Resource::FilteredRows, COLOUR, &resource::FILTERED_ROWS);
-    (variant.filter_radius > 0).then_some(rows)
+/// The filtered picture.
+fn filtered(variant: &Variant) -> Option<TargetDescription> {
+    let filtered = stored(Resource::Filtered, COLOUR, &resource::FILTERED);
+    (variant.filter_radius > 0).then_some(filtered)
 }
 
 fn image(
@@ -409,9 +409,14 @@ impl RenderTargets {
         }
     }
 
+    /// The image after all passes.
+    pub fn final_image(&self) -> Resource {
+        if self.find(Resource::Filtered).is_some() { Resource::Filtered } else { Resource::Image }
+    }
+
     /// Output images, to be read back.
     pub fn outputs(&self) -> impl Iterator<Item = &Image> {
-        [Resource::Image, Resource::Normal, Resource::Depth, Resource::Id]
+        [self.final_image(), Resource::Normal, Resource::Depth, Resource::Id]
             .into_iter()
             .filter_map(|output| self.image(output))
     }

@@ -84,10 +84,10 @@ impl Settings {
         (0.71 / self.cutoff).powi(2)
     }
 
-    /// Radius of the filter of pixels, px: 4 σ, rounded up; 0 if the picture is not filtered.
+    /// Radius of the filter of pixels, px: 3 σ, rounded up; 0 if the picture is not filtered.
     pub fn filter_radius(&self) -> u32 {
         match self.shading {
-            Shading::Lit | Shading::Colour => (4.0 * self.pixel_filter.sqrt()).ceil() as u32,
+            Shading::Lit | Shading::Colour => (3.0 * self.pixel_filter.sqrt()).ceil() as u32,
             Shading::Normal | Shading::Depth | Shading::Overlap | Shading::Weight => 0,
         }
     }

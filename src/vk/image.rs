@@ -20,7 +20,7 @@ pub enum ImageUse {
     Output,
     /// The result of a frame that compute shaders write: copied to the CPU, or drawn over a host's target.
     StoredOutput,
-    /// The result of a frame that is drawn, and then loaded and stored by compute shaders.
+    /// A picture that is drawn, and then loaded by compute shaders.
     FilteredOutput,
     /// Written and fetched by compute shaders in parts, in `GENERAL` layout ([`super::Access::in_general`]).
     Stored,

@@ -78,5 +78,5 @@ fn other_quantities_are_not_filtered() {
         assert_eq!(settings.filter_radius(), 0);
     }
     let settings = Settings { pixel_filter: 0.75, ..Settings::default() };
-    assert_eq!(settings.filter_radius(), 4);
+    assert_eq!(settings.filter_radius(), 3);
 }

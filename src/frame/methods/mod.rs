@@ -6,9 +6,10 @@ mod pull_push;
 
 use super::pass::Pass;
 use super::passes::cull::CULL;
+use super::passes::filter::FILTER;
 use super::passes::order::ORDER;
 use super::passes::sides::SIDES;
-use super::passes::{boxes, filter, visibility};
+use super::passes::{boxes, visibility};
 use super::variant::Variant;
 use crate::settings::Rasterizer;
 use crate::settings::splatting::Visibility;
@@ -35,7 +36,7 @@ pub fn passes(variant: &Variant, path: Path, scenes: usize) -> Vec<&'static Pass
         }
     };
     if variant.filter_radius > 0 && !matches!(path, Path::Subpasses { .. }) {
-        list.extend([&filter::ROWS, &filter::COLUMNS]);
+        list.push(&FILTER);
     }
     if variant.clusters {
         list.insert(0, &CULL);
