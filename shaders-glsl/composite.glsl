@@ -43,11 +43,41 @@ layout(set = 0, binding = 3) uniform texture2D depth_image;
 layout(set = 0, binding = 4) uniform utexture2D id_image;
 #endif
 
+// Largest distance at which the filter of pixels covers pixels without a surface, px: Settings::filter_radius of the largest variance.
+const int MOST_RADIUS = 6;
+
+bool has_surface(ivec2 pixel) {
+    if (HOST_DEPTH) return texelFetch(depth_image, pixel, 0).r != 0.0;
+#ifdef WITH_NORMALS
+    return texelFetch(normal_image, pixel, 0).xyz != vec3(0.0);
+#else
+    return true;
+#endif
+}
+
+// The pixel, or the nearest one with a surface if only the filter of pixels covers it: depths and normals are not filtered.
+ivec2 surface_pixel(ivec2 pixel) {
+    if (has_surface(pixel)) return pixel;
+    ivec2 last = textureSize(picture_image, 0) - 1, nearest = pixel;
+    int least = 2 * MOST_RADIUS * MOST_RADIUS + 1;
+    for (int y = -MOST_RADIUS; y <= MOST_RADIUS; y++) {
+        for (int x = -MOST_RADIUS; x <= MOST_RADIUS; x++) {
+            ivec2 at = clamp(pixel + ivec2(x, y), ivec2(0), last);
+            if (x * x + y * y < least && has_surface(at)) {
+                least = x * x + y * y;
+                nearest = at;
+            }
+        }
+    }
+    return nearest;
+}
+
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy) - composite.origin;
     vec4 colour = texelFetch(picture_image, pixel, 0);
     if (colour.a == 0.0) discard;
     out_image = over_host(colour);
+    pixel = surface_pixel(pixel);
 #ifdef WITH_NORMALS
     out_normal = vec4(texelFetch(normal_image, pixel, 0).xyz, 1.0);
 #endif

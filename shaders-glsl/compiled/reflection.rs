@@ -275,8 +275,8 @@ pub static FILTER_COMPUTE: Module = Module {
     name: "filter_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("filter_compute.spv"),
-    constants: &[6, 31, 66],
-    resources: &[(&resource::FRAME, false), (&resource::IMAGE_OUTPUT, true), (&resource::FILTERED, true)],
+    constants: &[31, 66],
+    resources: &[(&resource::FRAME, false), (&resource::IMAGE_OUTPUT, false), (&resource::FILTERED, true)],
     push: 0,
 };
 

@@ -9,8 +9,6 @@ layout(constant_id = 66) const uint FILTER_RADIUS = 0;
 // Blends a shaded value over the background, if the frame has one.
 vec4 over_background(vec3 shaded, float alpha) {
     if (frame.background.a == 0.0) return vec4(shaded, alpha);
-    // Scalars are not blended with a colour: α is rounded.
-    if (SHADING != LIT && SHADING != COLOUR) alpha = step(0.5, alpha);
     return vec4(mix(frame.background.rgb, shaded, alpha), 1.0);
 }
 

@@ -5,6 +5,7 @@ use super::place::Place;
 use super::record::{self, Axes, Experiment, Implementation, Run, RunSettings};
 use crate::settings::methods::Method;
 use crate::settings::{Choice, Settings};
+use crate::verify::baseline;
 use crate::verify::scenes::Viewpoint;
 
 /// One run.
@@ -84,6 +85,15 @@ impl Plan {
     pub(super) fn by(&self, method: &Method) -> Self {
         let settings = Settings { shading: self.settings.shading, ..method.settings() };
         Self { settings, method: Some(*method), ..self.clone() }
+    }
+
+    /// The same run by another engine; the CPU baseline has its own settings.
+    pub(super) fn by_engine(&self, engine: Engine) -> Self {
+        let settings = match engine {
+            Engine::Baseline(_) => baseline::settings(&self.settings),
+            Engine::Splatting { .. } | Engine::Traced => self.settings.clone(),
+        };
+        Self { engine, settings, ..self.clone() }
     }
 
     /// Name in the results.

@@ -10,7 +10,8 @@ use super::time_limit::Estimates;
 use super::{ceilings, code, hard, time_limit};
 use crate::error::{Error, Result};
 use crate::progress::Progress;
-use crate::settings::{Choice, RasterizerChoice};
+use crate::settings::{Choice, RasterizerChoice, Settings};
+use crate::verify::baseline;
 use crate::vk::Device;
 use jiff::Timestamp;
 use std::path::PathBuf;
@@ -201,12 +202,12 @@ fn hard(
     Ok((sweeps, missing))
 }
 
-/// Computes times relative to the CPU baseline for as many points and pixels with default settings. Of several
+/// Computes times relative to the CPU baseline for as many points and pixels with its own settings. Of several
 /// baselines, one of the same suite and experiment is preferred, as it ran at about the same time.
 fn compare_times(runs: &mut [Run]) {
     let shipped = |run: &&Run| {
         let RunSettings { cutoff, lowpass, pixel_filter, widen, epsilon, cull, alpha, .. } =
-            RunSettings::defaults();
+            RunSettings::of(&baseline::settings(&Settings::default()));
         let own = &run.settings;
         (own.cutoff, own.lowpass, own.epsilon) == (cutoff, lowpass, epsilon)
             && own.pixel_filter == pixel_filter

@@ -100,7 +100,7 @@ impl Subject {
         }
     }
 
-    /// `points` surfels in Morton order, with the scene's lines and triangles. A scan's normals are the file's, or
+    /// `points` surfels in Morton order with their curvatures, and the scene's lines and triangles. A scan's normals are the file's, or
     /// estimated from the remaining points at any number, so that densities differ in nothing else.
     ///
     /// # Errors
@@ -109,7 +109,13 @@ impl Subject {
         match &self.shape {
             Shape::Built(_) => {
                 let separator = if self.name.contains('?') { '&' } else { '?' };
-                scenes::model(&format!("{}{separator}points={points}", self.name))
+                let Model { surfels, primitives } =
+                    scenes::model(&format!("{}{separator}points={points}", self.name))?;
+                let surfels = match surfels.is_empty() {
+                    true => surfels,
+                    false => Cloud::from(surfels).into_surfels(&Estimate::default(), &())?.0,
+                };
+                Ok(Model { surfels, primitives })
             }
             Shape::Scan(scan) => {
                 let surfels = scan.cloud.some(points as usize).into_surfels(&Estimate::default(), &());

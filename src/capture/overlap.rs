@@ -77,7 +77,7 @@ impl<'a> SurfelGrid<'a> {
     fn hit(&self, centre: &Surfel, other: &Surfel) -> Option<Hit> {
         let cosine = other.normal.dot(centre.normal);
         let one_sided = !other.two_sided && !centre.two_sided;
-        let culled = self.settings.cull == Cull::Back && cosine < 0.0 && one_sided;
+        let culled = self.settings.cull != Cull::None && cosine < 0.0 && one_sided;
         if culled || cosine.abs() < LEAST_COSINE {
             return None;
         }

@@ -72,7 +72,7 @@ impl WeightView {
         let (centre, _) = self.projector.locate(surfel.position)?;
         let (_, step) = self.projector.ray(centre);
         let facing = -step.normalize().dot(surfel.normal);
-        let culled = self.settings.cull == Cull::Back && facing < 0.0 && !surfel.two_sided;
+        let culled = self.settings.cull != Cull::None && facing < 0.0 && !surfel.two_sided;
         if culled || facing.abs() < LEAST_COSINE {
             return None;
         }

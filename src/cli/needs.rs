@@ -5,7 +5,7 @@ use surfel::frame::FramePlan;
 use surfel::scene::{ColourStream, PrimitiveKinds, Streams};
 use surfel::settings::methods::{Method, confetti, object_ewa, perspective_ewa, pull_push, sprites};
 use surfel::settings::splatting::{Normalization, Splatting};
-use surfel::settings::{Alpha, Shading};
+use surfel::settings::{Alpha, Cull, Shading};
 use surfel::{Outputs, Rasterizer, RenderOptions, Settings};
 
 /// A row of the table: a frame of a scene.
@@ -55,13 +55,16 @@ fn cases() -> Vec<Case> {
         ewa(),
         ewa().asking("depths", |settings, _| settings.shading = Shading::Depth),
         ewa().of("circles, some without sides", |streams| streams.two_sided = true),
+        ewa().of("circles with curvatures", |streams| streams.curvatures = true),
         ewa().of("ellipses", |streams| streams.ellipses = true),
         ewa().of("circles, some clipped", |streams| streams.clips = true),
         coloured(perspective_ewa::METHOD),
         coloured(perspective_ewa::METHOD)
             .asking("own colours", |settings, _| settings.shading = Shading::Colour),
-        coloured(perspective_ewa::METHOD)
-            .asking("lit, coverage", |settings, _| settings.alpha = Alpha::Coverage),
+        coloured(perspective_ewa::METHOD).asking("lit, a mask", |settings, _| settings.alpha = Alpha::Mask),
+        coloured(perspective_ewa::METHOD).asking("lit, unfiltered, both sides", |settings, _| {
+            (settings.pixel_filter, settings.cull) = (0.0, Cull::None);
+        }),
         coloured(perspective_ewa::METHOD).asking("lit, normals, depths", |_, outputs| {
             *outputs = Outputs { normal: true, depth: true, id: false };
         }),

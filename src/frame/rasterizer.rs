@@ -52,7 +52,7 @@ pub(crate) fn rasterizer_of(
 ) -> Result<(Rasterizer, RasterizerReason)> {
     match settings.pull_push {
         Some(_) => rasterizer_of_points(device, options, scenes),
-        None => rasterizer_for(device, options, settings.alpha, fit),
+        None => rasterizer_for(device, options, settings.drawn_alpha(), fit),
     }
 }
 

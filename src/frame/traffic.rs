@@ -142,6 +142,7 @@ fn of_streams(pass: &Pass, variant: &Variant, scene: &Streams) -> u64 {
     let is_read = |name: &str| match name {
         "positions" => true,
         "normals" => makes_splats || variant.cull_back,
+        "curvatures" => makes_splats && variant.curvatures,
         "colours" => makes_splats && variant.is_tiled() && variant.colours,
         "weights" => makes_splats && variant.weights,
         _ => makes_splats,
@@ -153,11 +154,12 @@ fn of_streams(pass: &Pass, variant: &Variant, scene: &Streams) -> u64 {
 mod tests {
     use super::*;
     use crate::scene::ColourStream;
-    use crate::settings::Shading;
     use crate::settings::methods::{Method, perspective_ewa, pull_push};
+    use crate::settings::{Alpha, Shading};
 
     fn of(method: Method, rasterizer: Rasterizer) -> Vec<PassTraffic> {
-        let settings = Settings { shading: Shading::Lit, ..method.settings() };
+        let settings =
+            Settings { shading: Shading::Lit, alpha: Alpha::Mask, ..method.settings().in_subpasses() };
         let streams = Streams::circles(ColourStream::None);
         PassTraffic::of(&streams, true, &settings, &RenderOptions::default(), rasterizer)
     }

@@ -189,7 +189,7 @@ impl Variant {
         Self {
             perspective,
             cull_back: settings.cull == Cull::Back,
-            cull_auto: settings.cull == Cull::Auto,
+            cull_auto: settings.finds_sides(),
             footprint: splatting.footprint,
             confetti: splatting.kernel != Kernel::Gaussian,
             visibility: splatting.visibility,
@@ -208,7 +208,7 @@ impl Variant {
             materials: streams.iter().any(|streams| streams.materials)
                 && settings.pull_push.is_some()
                 && shading == Shading::Lit,
-            coverage: settings.alpha == Alpha::Coverage,
+            coverage: settings.drawn_alpha() == Alpha::Coverage,
             filter_radius: settings.filter_radius(),
             shading,
             lights: if shading == Shading::Lit { settings.lighting.directional.len() as u32 } else { 0 },
@@ -220,7 +220,7 @@ impl Variant {
             sliced: false,
             clips: tiled && streams.iter().any(|streams| streams.clips),
             curvatures: settings.pull_push.is_none()
-                && settings.alpha == Alpha::Coverage
+                && settings.drawn_alpha() == Alpha::Coverage
                 && splatting.footprint.is_in_tangent_plane()
                 && splatting.kernel == Kernel::Gaussian
                 && streams.iter().any(|streams| streams.curvatures),

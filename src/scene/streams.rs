@@ -54,16 +54,16 @@ impl Streams {
         }
     }
 
-    /// Streams of uploaded surfels by name, with bytes per surfel; those of normals include the curvature. A clip takes 32 more, corner weights 16.
+    /// Streams of uploaded surfels by name, with bytes per surfel; curvatures lie beside the normals. A clip takes 32 more, corner weights 16.
     pub fn per_surfel(&self) -> Vec<(&'static str, u64)> {
         let optional = [
+            ("curvatures", if self.curvatures { SCALAR } else { 0 }),
             ("colours", self.colours.bytes()),
             ("ellipses", if self.ellipses { ELLIPSE } else { 0 }),
             ("clips", if self.clips { 4 } else { 0 }),
             ("weights", if self.weights.is_some() { SCALAR } else { 0 }),
         ];
-        let curvature = if self.curvatures { SCALAR } else { 0 };
-        let given = [("positions", VECTOR), ("normals", VECTOR + curvature), ("radii", SCALAR)].into_iter();
+        let given = [("positions", VECTOR), ("normals", VECTOR), ("radii", SCALAR)].into_iter();
         given.chain(optional.into_iter().filter(|(_, bytes)| *bytes > 0)).collect()
     }
 }

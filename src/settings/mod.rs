@@ -46,19 +46,18 @@ pub struct Settings {
 }
 
 impl Default for Settings {
-    /// Defaults from `surfel bench --suite full`: the cut-off beyond which the RMSE no longer falls though time rises, and a filter that
-    /// costs nothing for splats larger than itself.
+    /// Those of `perspective-ewa`: the most accurate pictures.
     fn default() -> Self {
         Self {
             pull_push: None,
             splatting: Splatting::default(),
-            cutoff: 2.5,
+            cutoff: 3.5,
             lowpass: 1.0,
-            pixel_filter: 0.0,
+            pixel_filter: 0.75,
             widen: Widen::Small,
             epsilon: 1.0,
-            cull: Cull::None,
-            alpha: Alpha::Mask,
+            cull: Cull::Auto,
+            alpha: Alpha::Coverage,
             shading: Shading::Lit,
             background: None,
             lighting: Lighting::default(),
@@ -101,6 +100,28 @@ impl Settings {
         }
     }
 
+    /// The meaning of α in the picture: normals, depths and counts are not blended with a colour, so before a background their α is a mask.
+    pub fn drawn_alpha(&self) -> Alpha {
+        match self.shading {
+            Shading::Lit | Shading::Colour => self.alpha,
+            _ if self.background.is_none() => self.alpha,
+            Shading::Normal | Shading::Depth | Shading::Overlap | Shading::Weight => Alpha::Mask,
+        }
+    }
+
+    /// Whether the sides of surfaces are found, for [`Cull::Auto`]: by splats along viewing rays. Pull–push and [`Visibility::Axis`] draw both
+    /// sides then.
+    pub fn finds_sides(&self) -> bool {
+        self.cull == Cull::Auto && self.pull_push.is_none() && self.splatting.visibility != Visibility::Axis
+    }
+
+    /// The settings by which subpasses of a host draw: over the host's picture, without the filter of pixels, which reads neighbours, and
+    /// without [`Cull::Auto`], which needs a visibility pass before them.
+    pub fn in_subpasses(&self) -> Self {
+        let cull = if self.cull == Cull::Auto { Cull::None } else { self.cull };
+        Self { background: None, pixel_filter: 0.0, cull, ..self.clone() }
+    }
+
     /// Returns an error if the scene has lines or triangles, as `there` tells, and the method draws splats only.
     pub fn check_primitives(&self, there: bool) -> Result<()> {
         if there && self.pull_push.is_none() {
@@ -129,15 +150,6 @@ impl Settings {
         if self.pull_push.is_some() && self.splatting != Splatting::default() {
             return Err(Error::Usage(
                 "pull-push has no splats: leave out footprint, kernel, filter, visibility, normalization and shade".into(),
-            ));
-        }
-        if self.cull == Cull::Auto
-            && (self.pull_push.is_some() || self.splatting.visibility == Visibility::Axis)
-        {
-            return Err(Error::Usage(
-                "the sides of a surface are found by splats along viewing rays: by pull-push, or with the visibility axis, choose the culling \
-                 none or back"
-                    .into(),
             ));
         }
         self.pull_push.map_or(Ok(()), PullPush::check)?;
@@ -238,7 +250,8 @@ pub enum Cull {
     /// Of the surfels whose normals face away, those of the far side of a closed surface are culled.
     ///
     /// These are surfels behind whose centres, or at most a radius before them, a surface faces the eye: culling equals `back` on closed
-    /// surfaces, and leaves open ones whole from behind. Other normals are flipped towards the eye.
+    /// surfaces, and leaves open ones whole from behind. Other normals are flipped towards the eye. Pull–push, [`Visibility::Axis`] and
+    /// subpasses of a host draw both sides.
     Auto,
 }
 

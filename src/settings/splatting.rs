@@ -179,7 +179,7 @@ impl Default for Splatting {
             filter: Filter::Screen,
             visibility: Visibility::Ray,
             normalization: Normalization::Pixel,
-            shade: Shade::Pixel,
+            shade: Shade::MeanNormal,
         }
     }
 }

@@ -21,13 +21,14 @@ fn a_property_has_one_range_over_all_inputs() {
     let program = Program::new();
     program.write("a.ply", surfels_with("intensity", &["-1 0 0 0 0 1 0.4 3", "0 0 0 0 0 1 0.4 nan"]));
     program.write("b.ply", surfels_with("intensity", &["1 0 0 0 0 1 0.4 7", "nan 0 0 0 0 1 0.4 99"]));
-    let run = program.run(&format!("render a.ply b.ply -o out.png --color-by intensity {FRONT}"));
+    let run =
+        program.run(&format!("render a.ply b.ply -o out.png --alpha mask --color-by intensity {FRONT}"));
     run.text();
     let line = "intensity: 3 to 7 (1st to 99th percentile of 2); 1 of 3 points have none and are grey\n";
     assert!(run.err.contains(line), "{}", run.err);
     assert_eq!(row(&program), [FIRST, GREY, LAST]);
     // A given range is not printed.
-    let run = program.run(&format!("render b.ply -o out.png --color-by intensity:7,9 {FRONT}"));
+    let run = program.run(&format!("render b.ply -o out.png --alpha mask --color-by intensity:7,9 {FRONT}"));
     assert!(!run.err.contains("intensity"), "{}", run.err);
     assert_eq!(row(&program), [[0; 4], [0; 4], FIRST]);
 }
@@ -50,7 +51,7 @@ fn surfels_are_coloured_by_geometric_quantities() {
     let program = Program::new();
     program.write("a.ply", surfels(&["-1 0 0 0 0 1 0.4", "0 0 0.5 0 1 1 0.4", "1 0 1 0 0 1 0.5"]));
     let colours = |by: &str| {
-        program.run(&format!("render a.ply -o out.png --quiet --color-by {by} {FRONT}")).text();
+        program.run(&format!("render a.ply -o out.png --quiet --alpha mask --color-by {by} {FRONT}")).text();
         row(&program)
     };
     let [first, middle, last] = colours("x");
@@ -69,7 +70,8 @@ fn surfels_are_coloured_by_geometric_quantities() {
     assert_eq!(colours("x --color-map magma")[0], [0, 0, 4, 255]);
     // The up direction may come from a file.
     program.write("c.json", r#"{"eye":[0,0,5],"target":[0,0,0],"up":[-2,0,0],"fov_y_deg":43.6028}"#);
-    let common = "-o out.png --reference --size 40x40 --shading color --color-by height --camera c.json";
+    let common =
+        "-o out.png --alpha mask --reference --size 40x40 --shading color --color-by height --camera c.json";
     program.run(&format!("render a.ply {common}")).text();
     assert_eq!([30, 10].map(|y| program.png("out.png").get_pixel(20, y).0), [FIRST, LAST]);
 }

@@ -71,7 +71,7 @@ fn missing_camera_options_frame_the_scene() {
     program.write("c.json", r#"{"eye":[10,20,40],"target":[10,20,30],"up":[0,1,0],"fov_y_deg":45}"#);
     assert_eq!(eye, view("--camera c.json"));
     // A disc that faces the camera covers the centre.
-    assert_eq!(program.png("out.png").get_pixel(16, 16)[3], 255);
+    assert!(program.png("out.png").get_pixel(16, 16)[3] > 240);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! End-to-end tests of the `surfel` program: arguments in; exit code, streams and files out.
 
+mod against_mesh;
 mod bench;
 mod cameras;
 mod colours;

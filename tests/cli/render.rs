@@ -81,7 +81,7 @@ fn a_single_pixel_and_a_single_row_are_pictures() {
         program.run(&format!("render {SPHERE} -o a.png --validate --size {size}")).text();
         let picture = program.png("a.png");
         assert_eq!(picture.dimensions(), (width, height));
-        assert_eq!(picture.get_pixel(width / 2, height / 2)[3], 255, "{size}: nothing in the middle");
+        assert!(picture.get_pixel(width / 2, height / 2)[3] > 64, "{size}: nothing in the middle");
     }
 }
 

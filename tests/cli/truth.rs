@@ -29,7 +29,11 @@ fn a_scene_is_traced_and_cached() {
 fn the_camera_is_that_of_a_rendered_picture() {
     let program = Program::new();
     let common = "--size 48x48 --shading color -q";
-    program.run(&format!("render scene:bumpy-sphere -o a.exr --reference --layers depth {common}")).text();
+    program
+        .run(&format!(
+            "render scene:bumpy-sphere -o a.exr --reference --alpha mask --cull back --layers depth {common}"
+        ))
+        .text();
     program.run(&format!("truth scene:bumpy-sphere -o b.exr --filter point --layers depth {common}")).text();
     program.run("compare a.exr b.exr --fail-above holes=0 --fail-below iou=0.9 -q").text();
 }

@@ -7,6 +7,7 @@ use crate::support::gpu::{assert_silent, device};
 use crate::support::if_whole;
 use crate::support::layouts::Layout;
 use crate::support::placing::turned;
+use crate::support::settings::splats_alone;
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 use surfel::geometry::{Camera, Colours, Ellipse, Surfels};
@@ -81,8 +82,8 @@ fn cameras() -> Vec<Camera> {
 fn frames() -> Vec<Settings> {
     let axis = Splatting { visibility: Visibility::Axis, ..Splatting::default() };
     let others = [
-        Settings { splatting: axis, ..Settings::default() },
-        Settings { alpha: Alpha::Coverage, ..Settings::default() },
+        Settings { splatting: axis, ..splats_alone() },
+        Settings { alpha: Alpha::Coverage, ..splats_alone() },
     ];
     Method::ALL.iter().map(Method::settings).chain(others).collect()
 }
@@ -222,7 +223,7 @@ fn updates_move_the_bounds_of_clusters() {
     let mut surfels = surfels();
     let own = Scene::upload(&device, &surfels).unwrap();
     let mut renderer = renderer(&device);
-    let settings = Settings { cull: Cull::Back, ..Settings::default() };
+    let settings = Settings { cull: Cull::Back, ..splats_alone() };
     let all: Vec<_> = cameras();
     // Parts of clusters, and whole ones; the last update turns all of the surfels.
     for (step, range) in [100..110, 640..1280, 5_000..9_000, 0..12_000].into_iter().enumerate() {

@@ -68,3 +68,32 @@ pub fn refused<T>(made: surfel::Result<T>, expected: &str) {
     let text = made.err().map(|error| error.to_string()).unwrap_or_default();
     assert!(text.contains(expected), "`{expected}` is not in `{text}`");
 }
+
+/// Checks a host's depths with the near plane at 0.1: 0.1 over the picture's distances. A pixel that only the filter of pixels covers has the
+/// depth of the nearest surface.
+pub fn assert_depths(found: &[f32], own: &Picture) {
+    let [width, height] = own.size.map(|side| side as i32);
+    let distances = own.depth.as_ref().unwrap();
+    for (i, (found, colour)) in (0..).zip(found.iter().zip(&own.colour)) {
+        let [x, y] = [i % width, i / width];
+        let around = (-6..=6).flat_map(|dy| (-6..=6).map(move |dx| (dx, dy)));
+        let surfaces = around.filter_map(|(dx, dy)| {
+            let [u, v] = [x + dx, y + dy];
+            let is_inside = (0..width).contains(&u) && (0..height).contains(&v);
+            let distance = is_inside.then(|| distances[(v * width + u) as usize])?;
+            (distance > 0.0).then_some((dx * dx + dy * dy, distance))
+        });
+        let exact: Vec<f64> = match (distances[i as usize], colour[3]) {
+            (0.0, 0.0) => vec![0.0],
+            (0.0, _) => {
+                let surfaces: Vec<_> = surfaces.collect();
+                let least = surfaces.iter().map(|(square, _)| *square).min();
+                let nearest = surfaces.iter().filter(|(square, _)| Some(*square) == least);
+                nearest.map(|(_, distance)| 0.1 / f64::from(*distance)).collect()
+            }
+            (distance, _) => vec![0.1 / f64::from(distance)],
+        };
+        let is_near = |exact: &f64| (f64::from(*found) - exact).abs() <= 1.5e-7 * exact;
+        assert!(exact.iter().any(is_near), "{x} {y}: {found} {exact:?}");
+    }
+}

@@ -12,6 +12,7 @@ use glam::{DVec3, Vec3};
 use std::sync::Arc;
 use surfel::embed::{self, Changes, Options, Renderer, View};
 use surfel::geometry::{Camera, Surfels};
+use surfel::settings::Alpha;
 use surfel::settings::methods::Method;
 use surfel::vk::{Device, DeviceOptions};
 use surfel::{Outputs, Picture, Rasterizer, RenderOptions, Scene, Settings};
@@ -135,7 +136,8 @@ fn far_away(reversed: bool) -> Camera {
 #[test]
 fn native_subpasses_start_from_depth_of_every_format_and_leave_such() {
     let Some(host) = open(|all| all) else { return };
-    let settings = Settings { epsilon: 0.1, ..settings("perspective-ewa") };
+    let settings =
+        Settings { epsilon: 0.1, alpha: Alpha::Mask, ..settings("perspective-ewa").in_subpasses() };
     let device = host.external_device(None).unwrap();
     let scene = upload(&host, &device, &surfels());
     for (format, step) in depths(&host) {

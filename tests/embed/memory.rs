@@ -4,6 +4,7 @@ use crate::fixture::{assert_silent, open, sphere, upload};
 use crate::host::Host;
 use crate::rig::{Rendered, Rig};
 use crate::support::if_whole;
+use crate::support::settings::splats_alone;
 use ash::vk::{self, MemoryPropertyFlags as Flags};
 use std::ptr::NonNull;
 use std::sync::Arc;
@@ -66,7 +67,7 @@ fn device(host: &Host, pattern: [u32; 4]) -> Arc<Device> {
 /// Frames of all methods and shapes of edges, by both rasterizers, of spheres that grow: no frame has the memory of one before.
 fn frames(host: &Host, device: &Arc<Device>) -> Vec<(String, Rendered)> {
     let settings = Method::ALL.iter().map(|method| (method.name, method.settings()));
-    let coverage = ("coverage", Settings { alpha: Alpha::Coverage, ..Settings::default() });
+    let coverage = ("coverage", Settings { alpha: Alpha::Coverage, ..splats_alone() });
     let settings: Vec<_> = settings.chain([coverage]).collect();
     let mut frames = Vec::new();
     for rasterizer in [Rasterizer::Compute, Rasterizer::Draw] {

@@ -13,6 +13,7 @@ use glam::{DMat4, DVec3, Vec3};
 use surfel::embed::View;
 use surfel::embed::native::Renderer;
 use surfel::geometry::Surfels;
+use surfel::settings::Alpha;
 use surfel::{Rasterizer, Settings};
 
 /// A parallelogram through the sphere: its centre and the halves of its sides, orthogonal for `meets`.
@@ -46,7 +47,7 @@ fn among_the_hosts_surfaces_the_picture_is_the_composites_and_the_references() {
     let Some(host) = open(|all| all) else { return };
     let (centre, sides) = plane();
     let corners = parallelogram(centre.as_vec3(), sides.map(|side| side.as_vec3()));
-    let settings = method("perspective-ewa");
+    let settings = Settings { alpha: Alpha::Mask, ..method("perspective-ewa") };
     let reference = surfel::verify::reference::render(&surfels(), &camera(), SIZE, &settings, &()).unwrap();
     let height = SIZE[1] as f32;
     let plain = viewport(SIZE);

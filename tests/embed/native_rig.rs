@@ -28,7 +28,7 @@ pub const PLAIN: Kind = Kind {
 };
 
 pub fn method(name: &str) -> Settings {
-    Settings { background: None, ..Method::named(name).unwrap().settings() }
+    Settings { background: None, ..Method::named(name).unwrap().settings().in_subpasses() }
 }
 
 /// A frame of a native host.

@@ -5,6 +5,7 @@ use crate::fixture::{Fixture, SIZE, assert_silent, open, sphere, surfels, upload
 use crate::host::Host;
 use crate::host::frame::{Kind, Way};
 use crate::host::native::{self, Native};
+use crate::support::settings::splats_alone;
 use crate::{FLOATS, ONE};
 use glam::DVec3;
 use std::sync::Arc;
@@ -148,7 +149,7 @@ fn a_frame_that_lacks_splats_is_reported_and_the_next_one_lacks_none() {
     all.normals.extend(&dense.normals);
     all.radii.extend(dense.radii.iter().map(|radius| 0.01 * radius));
     all.colours = None;
-    let (view, settings) = (View::whole(nearer(0), SIZE), Settings::default());
+    let (view, settings) = (View::whole(nearer(0), SIZE), splats_alone());
     let frames = |rasterizer| {
         let mut fixture = Fixture::new(&host, kind, SIZE, Some(rasterizer), &all);
         fixture.renderer.measure(Measured { times: true, counts: false });
@@ -217,8 +218,8 @@ fn subpasses_tell_what_is_asked_for() {
     let both = Measured { times: true, counts: true };
     let names = ["perspective-ewa", "sprites", "sprites-unfiltered"];
     for (name, seed) in names.into_iter().flat_map(|name| [(name, false), (name, true)]) {
-        let settings = Settings { cull: Cull::Back, ..Method::named(name).unwrap().settings() };
-        let settings = Settings { background: None, ..settings };
+        let preset = Method::named(name).unwrap().settings();
+        let settings = Settings { cull: Cull::Back, ..preset.in_subpasses() };
         let own = reports(&settings, Some(Rasterizer::Draw), true);
         let device = host.external_device(None).unwrap();
         let scene = upload(&host, &device, &surfels());

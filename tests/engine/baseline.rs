@@ -2,6 +2,7 @@
 
 use crate::support::sampling::{Random, bumpy_sphere, paint_linear, push};
 use crate::support::scenes::{self, Case};
+use crate::support::settings::splats_alone;
 use crate::support::texture::textured;
 use glam::{DVec3, Vec3};
 use surfel::geometry::{Camera, Cloud, Colours, Surfels};
@@ -122,7 +123,7 @@ fn a_wide_picture_keeps_its_digits() {
     paint_linear(&mut surfels, &mut random);
     let fov = 2.0 * (0.5 * 9.0 * pixel / 3.0f64).atan();
     let camera = Camera::look_at(3.0 * DVec3::Z, DVec3::ZERO, DVec3::Y, fov, 30_001.0 / 9.0, 0.1).unwrap();
-    let settings = Settings::default();
+    let settings = splats_alone();
     let expected = Expected::new(&surfels, &camera, size, &settings, &Tolerance::float32()).unwrap();
     let comparison = expected.compare(&draw(Kind::Splats, &surfels, &camera, size, &settings)).unwrap();
     print("wide", &comparison);
@@ -257,7 +258,7 @@ fn greys(positions: &[[f32; 3]]) -> Surfels {
 
 /// The greys of the pixels of the 8 × 8 picture that are not empty, by column and row.
 fn shown(surfels: &Surfels) -> Vec<([usize; 2], f32)> {
-    let settings = Settings { shading: Shading::Colour, ..Default::default() };
+    let settings = Settings { shading: Shading::Colour, ..splats_alone() };
     let picture = draw(Kind::Pixels, surfels, &grid_camera(), [8, 8], &settings);
     let pixels = picture.colour.iter().enumerate().filter(|(_, colour)| colour[3] != 0.0);
     pixels.map(|(i, colour)| ([i % 8, i / 8], colour[0])).collect()
@@ -296,7 +297,7 @@ fn a_centre_on_an_edge_is_in_the_pixel_to_the_right_and_below() {
 fn frames_sum_only_what_they_need() {
     let surfels = bumpy_sphere(5_000, &mut Random(1));
     let camera = Camera::framing(&surfels.bounds().unwrap(), 0.8, 1.0).unwrap();
-    let settings = Settings::default();
+    let settings = splats_alone();
     for kind in [Kind::Pixels, Kind::Splats] {
         let mut baseline = Baseline::new(&surfels).unwrap();
         let mut frame = |outputs: Outputs| {
@@ -323,12 +324,12 @@ fn unsupported_frames_are_refused() {
     let camera = Camera::framing(&surfels.bounds().unwrap(), 0.8, 1.0).unwrap();
     let flat = Camera { projection: glam::DMat4::ZERO, ..camera };
     let mut baseline = Baseline::new(&surfels).unwrap();
-    let negative = Settings { cutoff: -1.0, ..Default::default() };
-    let coverage = Settings { alpha: Alpha::Coverage, ..Default::default() };
+    let negative = Settings { cutoff: -1.0, ..splats_alone() };
+    let coverage = Settings { alpha: Alpha::Coverage, ..splats_alone() };
     for (camera, size, settings) in [
-        (camera, [0, 10], Settings::default()),
-        (camera, [10, 65_536], Settings::default()),
-        (flat, [10, 10], Settings::default()),
+        (camera, [0, 10], splats_alone()),
+        (camera, [10, 65_536], splats_alone()),
+        (flat, [10, 10], splats_alone()),
         (camera, [10, 10], negative),
         (camera, [10, 10], coverage),
     ] {

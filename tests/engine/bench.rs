@@ -1,6 +1,7 @@
 //! The bench measures runs, and reports why a run cannot be measured.
 
 use crate::support::gpu::{assert_silent, device};
+use crate::support::settings::splats_alone;
 use crate::support::texture;
 use base64::prelude::{BASE64_STANDARD, Engine as _};
 use std::f64::consts::PI;
@@ -42,7 +43,7 @@ fn plan(scene: &str, points: u64, side: u32) -> Plan {
         size: [side, side],
         engine: Engine::DEFAULT,
         method: None,
-        settings: Settings { shading: Shading::Colour, ..Default::default() },
+        settings: Settings { shading: Shading::Colour, ..splats_alone() },
         place: Place::Own,
         measurements: Measurements { time: false, ..Measurements::BOTH },
         base: None,

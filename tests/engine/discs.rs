@@ -2,6 +2,7 @@
 
 use crate::support::gpu::{assert_silent, device, render};
 use crate::support::sampling::{Random, bumpy_sphere, forget_sides, narrow, push, stretch};
+use crate::support::settings::splats_alone;
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 use surfel::geometry::{Camera, Ellipse, Surfels};
@@ -25,7 +26,7 @@ fn options(rasterizer: Rasterizer) -> RenderOptions {
 
 fn picture(device: &Arc<Device>, surfels: &Surfels, rasterizer: Rasterizer) -> Picture {
     let eye = DVec3::new(1.8, 1.2, 2.6);
-    render(device, surfels, &camera(eye), &Settings::default(), options(rasterizer))
+    render(device, surfels, &camera(eye), &splats_alone(), options(rasterizer))
 }
 
 #[test]
@@ -36,7 +37,7 @@ fn ellipses_of_aspect_1_are_circles() {
     narrow(&mut round, &mut Random(2));
     round.ellipses.iter_mut().flatten().for_each(|ellipse| ellipse.aspect = 1.0);
     let view = camera(DVec3::new(1.8, 1.2, 2.6));
-    let expected = Expected::new(&circles, &view, SIZE, &Settings::default(), &Tolerance::default()).unwrap();
+    let expected = Expected::new(&circles, &view, SIZE, &splats_alone(), &Tolerance::default()).unwrap();
     for rasterizer in BOTH {
         let verdict = expected.compare(&picture(&device, &round, rasterizer)).unwrap();
         assert!(verdict.passed(), "{rasterizer:?}: {:?}", verdict.failures.first());
@@ -59,7 +60,7 @@ fn wall() -> Surfels {
 fn two_sided_surfels_have_no_back() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let scene = Scene::upload(&device, &wall()).unwrap();
-    let settings = Settings { cull: Cull::Back, ..Default::default() };
+    let settings = Settings { cull: Cull::Back, ..splats_alone() };
     for rasterizer in BOTH {
         let mut renderer = Renderer::new(&device, options(rasterizer)).unwrap();
         let mut seen = |z: f64| {
@@ -128,7 +129,7 @@ fn shapes_that_are_none_are_culled() {
     for rasterizer in BOTH {
         let mut renderer = Renderer::new(&device, options(rasterizer)).unwrap();
         let (picture, report) =
-            renderer.render_picture(&scene, &camera(DVec3::Z * 9.0), &Settings::default()).unwrap();
+            renderer.render_picture(&scene, &camera(DVec3::Z * 9.0), &splats_alone()).unwrap();
         let counts = report.counts.unwrap();
         assert_eq!((counts.drawn, counts.invalid), (1596, 4), "{rasterizer:?}");
         assert!(picture.colour.iter().flatten().all(|c| c.is_finite()), "{rasterizer:?}");
@@ -154,11 +155,11 @@ fn invalid_surfels_neither_show_nor_hide() {
     // Nothing wrong, but without a weight.
     bad(&mut mixed, 1e-21, Vec3::Z);
     let view = camera(DVec3::Z * 9.0);
-    let expected = Expected::new(&good, &view, SIZE, &Settings::default(), &Tolerance::default()).unwrap();
+    let expected = Expected::new(&good, &view, SIZE, &splats_alone(), &Tolerance::default()).unwrap();
     let scene = Scene::upload(&device, &mixed).unwrap();
     for rasterizer in BOTH {
         let mut renderer = Renderer::new(&device, options(rasterizer)).unwrap();
-        let (picture, report) = renderer.render_picture(&scene, &view, &Settings::default()).unwrap();
+        let (picture, report) = renderer.render_picture(&scene, &view, &splats_alone()).unwrap();
         let verdict = expected.compare(&picture).unwrap();
         assert!(verdict.passed(), "{rasterizer:?}: {:?}", verdict.failures.first());
         let counts = report.counts.unwrap();

@@ -3,6 +3,7 @@
 use crate::support::gpu::{assert_silent, device};
 use crate::support::if_whole;
 use crate::support::sampling::{Random, narrow, push};
+use crate::support::settings::splats_alone;
 use glam::{DMat2, DVec2, DVec3};
 use std::f64::consts::TAU;
 use surfel::geometry::{Camera, Surfels};
@@ -141,7 +142,7 @@ fn compare(elliptical: bool, widen: Widen) {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let eye = DVec3::new(0.3, -0.2, 0.1);
     let camera = Camera::look_at(eye, eye + DVec3::new(0.4, 0.1, 1.0), DVec3::Y, 0.8, 1.0, 1e-4).unwrap();
-    let settings = Settings { widen, ..Default::default() };
+    let settings = Settings { widen, ..splats_alone() };
     let surfels = discs(&camera, elliptical);
     let scene = Scene::upload(&device, &surfels).unwrap();
     let options = RenderOptions { size: [SIZE; 2], ..Default::default() };

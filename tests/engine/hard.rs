@@ -3,14 +3,15 @@
 use crate::support::gpu::{assert_silent, device};
 use crate::support::if_whole;
 use crate::support::sampling::push;
+use crate::support::settings::splats_alone;
 use glam::DVec3;
+use surfel::Picture;
 use surfel::bench::hard::{Options, compare, names, run};
 use surfel::bench::record::{Faults, Sweep, SweepPoint};
 use surfel::geometry::{Camera, Surfels};
 use surfel::settings::methods::Method;
 use surfel::verify::reference::{Admissible, Expected, Tolerance};
 use surfel::vk::DeviceLimits;
-use surfel::{Picture, Settings};
 
 /// Prints a line per point.
 fn print(sweep: &Sweep) {
@@ -154,7 +155,7 @@ fn disc(radius: f64) -> (Expected, Picture) {
     let camera =
         Camera::orthographic([5.0 * DVec3::Z, DVec3::ZERO, DVec3::Y], 64.0, 1.0, [1.0, 10.0]).unwrap();
     let expected =
-        Expected::new(&surfels, &camera, [64, 64], &Settings::default(), &Tolerance::default()).unwrap();
+        Expected::new(&surfels, &camera, [64, 64], &splats_alone(), &Tolerance::default()).unwrap();
     let picture = expected.frame.to_picture();
     (expected, picture)
 }
@@ -212,7 +213,7 @@ fn faults_are_found() {
 #[test]
 fn what_may_be_either_is_no_fault() {
     // What visibility sees is larger than the disc by the least low-pass, and ends at the centres of pixels.
-    let lowpass = f64::from(Settings::default().least_lowpass().sqrt() * Settings::default().cutoff);
+    let lowpass = f64::from(splats_alone().least_lowpass().sqrt() * splats_alone().cutoff);
     let (expected, own) = disc((10.5f64.powi(2) + 5.5f64.powi(2) - lowpass.powi(2)).sqrt());
     let is_open = |i: &usize| match expected.bounds.admissible(*i) {
         Admissible::Values(values) => {

@@ -3,6 +3,7 @@
 
 use crate::support::gpu::{assert_silent, device, render};
 use crate::support::pyramids::{FrameCase, Rendered};
+use crate::support::settings::points_alone;
 use crate::support::truth::{Differences, Truth};
 #[allow(dead_code)] // of what is shared
 use glam::DVec3;
@@ -94,7 +95,7 @@ fn faults_of(
     let surfels = scenes::open(&format!("scene:bumpy-sphere?points={points}&seed=1")).unwrap();
     let pull_push = PullPush::of(rules);
     let shading = Shading::Colour;
-    let settings = Settings { shading, cull: Cull::Back, pull_push: Some(pull_push), ..Default::default() };
+    let settings = Settings { shading, cull: Cull::Back, pull_push: Some(pull_push), ..points_alone() };
     let name = format!("{points} points, {rules:?}, {precision:?}");
     let case = FrameCase {
         name,
@@ -150,7 +151,7 @@ fn reaches_what_was_measured(make: &dyn Fn(&FrameCase) -> Rendered) {
 fn coarser_levels_than_the_largest_disc_change_nothing() {
     let truth = Truth::new(128);
     let surfels = scenes::open("scene:bumpy-sphere?points=2000&seed=1").unwrap();
-    let settings = Settings { cull: Cull::Back, ..Default::default() };
+    let settings = Settings { cull: Cull::Back, ..points_alone() };
     for rules in [Rules::Paper, Rules::Robust] {
         let frame =
             Reconstruction::new(&truth.camera(), truth.size(), &settings, PullPush::of(rules)).unwrap();
@@ -242,8 +243,7 @@ fn numbers_are_those_of_points_beside_what_is_seen() {
         assert!(far < if method == pull_push::METHOD { 0.01 } else { 0.1 }, "{}: {far}", method.name);
     }
     let scene = Scene::upload(&device, &surfels).unwrap();
-    let refused =
-        Renderer::new(&device, options).unwrap().render(&scene, &truth.camera(), &Settings::default());
+    let refused = Renderer::new(&device, options).unwrap().render(&scene, &truth.camera(), &points_alone());
     assert!(refused.unwrap_err().to_string().contains("point ids"));
     assert_silent(&device);
 }
@@ -310,7 +310,7 @@ fn where_the_levels_are_kept_changes_nothing() {
             let mut apart_in_shade = None;
             let [apart, in_turns] = [Storage::Apart, Storage::PingPong].map(|storage| {
                 let pull_push = Some(PullPush { storage, ..PullPush::of(rules) });
-                let settings = Settings { cull: Cull::Back, pull_push, ..Default::default() };
+                let settings = Settings { cull: Cull::Back, pull_push, ..points_alone() };
                 let (picture, _) =
                     renderer.render_picture(&scene, &Truth::new(side).camera(), &settings).unwrap();
                 if storage == Storage::Apart {
@@ -340,7 +340,7 @@ fn box_weights_agree_with_the_reference() {
     let options = RenderOptions { size: [128; 2], ..Default::default() };
     let mut renderer = Renderer::new(&device, options).unwrap();
     let camera = Truth::new(128).camera();
-    let mut settings = Settings { cull: Cull::Back, ..Default::default() };
+    let mut settings = Settings { cull: Cull::Back, ..points_alone() };
     let mut of = |weights| {
         settings.pull_push = Some(PullPush { weights, ..PullPush::of(Rules::Paper) });
         let (picture, _) = renderer.render_picture(&scene, &camera, &settings).unwrap();

@@ -1,6 +1,7 @@
 //! Pull–push of ribbons, tubes and polygons: the float64 reference against rays through the exact surface.
 
 use crate::support::gpu::{assert_silent, device, render};
+use crate::support::settings::points_alone;
 use glam::{DVec3, Vec3};
 use surfel::geometry::{Camera, Model, Parts};
 use surfel::settings::pull_push::{PullPush, Rules};
@@ -88,7 +89,7 @@ fn compare(name: &str, size: [u32; 2]) -> [Faults; 2] {
         .unwrap()
         .camera(f64::from(size[0]) / f64::from(size[1]), &surface.bounds())
         .unwrap();
-    let settings = Settings { shading: Shading::Lit, ..Default::default() };
+    let settings = Settings { shading: Shading::Lit, ..points_alone() };
     let options = Options { filter: Filter::Point, ..Default::default() };
     let exact = truth::render(&*surface, &camera, &settings, size, &options, &()).unwrap().picture;
     let file = name.replace([':', '?', '&', '='], "-");
@@ -180,7 +181,7 @@ fn the_gpu_makes_the_references_picture() {
                 let settings = Settings {
                     shading: Shading::Lit,
                     pull_push: Some(PullPush::of(rules)),
-                    ..Default::default()
+                    ..points_alone()
                 };
                 let outputs = Outputs { normal: true, depth: true, id: false };
                 let options = RenderOptions { size, outputs, ..Default::default() };

@@ -4,6 +4,7 @@
 use crate::support::gpu::{assert_silent, device};
 use crate::support::mesh;
 use crate::support::pyramids::{FrameCase, Rendered};
+use crate::support::settings::points_alone;
 #[allow(dead_code)] // of what is shared
 use glam::DVec3;
 use std::sync::Arc;
@@ -30,7 +31,7 @@ struct Faults {
 fn depths(subject: &Subject) -> Vec<f32> {
     let camera = subject.camera(&subject.viewpoint(), 0.0, SIZE).unwrap();
     let options = Options { filter: Filter::Point, ..Default::default() };
-    let settings = Settings::default();
+    let settings = points_alone();
     let Picture { depth, .. } =
         truth::render(subject.surface().unwrap(), &camera, &settings, SIZE, &options, &()).unwrap().picture;
     depth.unwrap()
@@ -59,7 +60,7 @@ fn faults(truth: &[f32], made: &Rendered, behind: f64) -> Faults {
 
 fn case<'a>(subject: &Subject, surfels: &'a Surfels, rules: Rules) -> FrameCase<'a> {
     let pull_push = PullPush::of(rules);
-    let settings = Settings { cull: Cull::Back, pull_push: Some(pull_push), ..Default::default() };
+    let settings = Settings { cull: Cull::Back, pull_push: Some(pull_push), ..points_alone() };
     let camera = subject.camera(&subject.viewpoint(), 0.0, SIZE).unwrap();
     let (name, precision) = (subject.name.clone(), Precision::Full);
     FrameCase { name, parts: surfels.into(), camera, size: SIZE, settings, pull_push, precision }

@@ -2,6 +2,7 @@
 
 use crate::frames::{SIZE, camera, sphere};
 use crate::support::gpu::{assert_silent, device};
+use crate::support::settings::splats_alone;
 use surfel::frame::faster::RasterizerTimes;
 use surfel::settings::methods::Method;
 use surfel::settings::{Alpha, Precision, RasterizerChoice, RasterizerReason, Settings};
@@ -13,7 +14,7 @@ fn a_preferred_rasterizer_is_taken_where_both_support_the_frame() {
     use Rasterizer::{Compute, Draw};
     use RasterizerReason::{Default, Faster, OnlySupported, Required};
     let surfels = sphere(500);
-    let splats = Settings::default();
+    let splats = splats_alone();
     let coverage = Settings { alpha: Alpha::Coverage, ..splats.clone() };
     let points = Method::named("pull-push").unwrap().settings();
     let all = DeviceLimits::default();
@@ -57,7 +58,7 @@ fn both_rasterizers_are_timed_in_turn() {
     let scene = Scene::upload(&device, &sphere(500)).unwrap();
     let measure =
         |settings: &Settings| RasterizerTimes::measure(&device, &scene, &camera(SIZE), settings, (SIZE, 3));
-    let times = measure(&Settings::default()).unwrap();
+    let times = measure(&splats_alone()).unwrap();
     assert!(times.draw > 0.0 && times.compute > 0.0 && times.ratios.len() == 3, "{times:?}");
     let ratio = times.ratio().unwrap();
     assert!(ratio.low <= ratio.median && ratio.median <= ratio.high, "{ratio:?}");

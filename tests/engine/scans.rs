@@ -1,5 +1,6 @@
 //! Real scans, from file to picture, against their meshes.
 
+use crate::support::settings::splats_alone;
 use crate::support::{gpu, mesh};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
@@ -8,7 +9,7 @@ use surfel::formats::{self, ReadOptions};
 use surfel::geometry::srgb;
 use surfel::geometry::{Bounds, Camera, Cloud, Surfels};
 use surfel::vk::{Device, DeviceLimits};
-use surfel::{Picture, RenderOptions, Settings};
+use surfel::{Picture, RenderOptions};
 
 const SIDE: u32 = 1024;
 /// From where scans are looked at: their directions from the middle.
@@ -28,7 +29,7 @@ fn render(device: &Arc<Device>, surfels: &Surfels, camera: &Camera) -> Picture {
         device,
         surfels,
         camera,
-        &Settings::default(),
+        &splats_alone(),
         RenderOptions { size: [SIDE; 2], ..Default::default() },
     )
 }

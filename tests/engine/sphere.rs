@@ -1,6 +1,7 @@
 //! A million splats of the bumpy sphere show what rays through the exact surface meet.
 
 use crate::support::gpu::{assert_silent, device, render};
+use crate::support::settings::splats_alone;
 use crate::support::truth::{Differences, Truth};
 use surfel::estimate::Estimate;
 use surfel::geometry::Cloud;
@@ -62,7 +63,7 @@ fn coverage_is_what_the_surface_covers() {
     let surfels = scenes::open("scene:bumpy-sphere?points=1000000&seed=1").unwrap();
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
         let errors = |alpha| {
-            let settings = Settings { shading: Shading::Colour, alpha, ..Default::default() };
+            let settings = Settings { shading: Shading::Colour, alpha, ..splats_alone() };
             let options =
                 RenderOptions { size: truth.size(), rasterizer: rasterizer.into(), ..Default::default() };
             coverage_errors(&exact, &render(&device, &surfels, &truth.camera(), &settings, options))
@@ -91,7 +92,7 @@ fn coverage_of_large_discs_ends_where_the_surface_turns_away() {
                 shading: Shading::Colour,
                 alpha: Alpha::Coverage,
                 cull: Cull::Auto,
-                ..Default::default()
+                ..splats_alone()
             };
             let options =
                 RenderOptions { size: truth.size(), rasterizer: rasterizer.into(), ..Default::default() };
@@ -114,8 +115,7 @@ fn a_million_splats_show_what_rays_meet() {
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
         for (lowpass, most_wrong_percent) in [(0.0, 1.1), (1.0, 1.25)] {
             let picture = |background| {
-                let settings =
-                    Settings { shading: Shading::Colour, lowpass, background, ..Default::default() };
+                let settings = Settings { shading: Shading::Colour, lowpass, background, ..splats_alone() };
                 let options =
                     RenderOptions { size: truth.size(), rasterizer: rasterizer.into(), ..Default::default() };
                 render(&device, &surfels, &truth.camera(), &settings, options)

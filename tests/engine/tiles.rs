@@ -3,6 +3,7 @@
 use crate::frames::{SIZE, agrees, all_outputs, camera, largest_difference, sphere};
 use crate::support::gpu::{assert_silent, device, render};
 use crate::support::if_whole;
+use crate::support::settings::splats_alone;
 use glam::{DMat2, Vec3};
 use surfel::frame::Splat;
 use surfel::geometry::{Colours, Curvature, Surfels};
@@ -30,8 +31,7 @@ fn a_picture_may_be_larger_than_a_storage_buffer() {
     }
     let options = RenderOptions { split: true, ..all_outputs(Rasterizer::Compute) };
     let scene = Scene::upload(&device, &surfels).unwrap();
-    let refused =
-        Renderer::new(&device, options).unwrap().render(&scene, &camera(SIZE), &Settings::default());
+    let refused = Renderer::new(&device, options).unwrap().render(&scene, &camera(SIZE), &splats_alone());
     assert!(matches!(refused.err(), Some(Error::Usage(text)) if text.contains("524288 bytes")));
     assert_silent(&device);
 }
@@ -45,9 +45,9 @@ fn every_kind_of_tile_workgroup_renders_the_same_picture() {
     };
     let axis = Splatting { visibility: Visibility::Axis, ..Splatting::default() };
     let frames = [
-        Settings::default(),
-        Settings { alpha: Alpha::Coverage, cull: Cull::Auto, ..Default::default() },
-        Settings { splatting: axis, ..Default::default() },
+        splats_alone(),
+        Settings { alpha: Alpha::Coverage, cull: Cull::Auto, ..splats_alone() },
+        Settings { splatting: axis, ..splats_alone() },
         Method::named("sprites-unfiltered").unwrap().settings(),
         Method::named("confetti").unwrap().settings(),
     ];
@@ -92,7 +92,7 @@ fn a_sort_puts_surfels_beside_their_neighbours() {
             let scene_of = Scene::upload(&device, surfels).unwrap();
             let options = RenderOptions { most_splats: Some(MOST), ..all_outputs(Rasterizer::Compute) };
             let mut renderer = Renderer::new(&device, options).unwrap();
-            let report = renderer.render(&scene_of, &camera(SIZE), &Settings::default()).unwrap();
+            let report = renderer.render(&scene_of, &camera(SIZE), &splats_alone()).unwrap();
             assert!(!report.incomplete, "{name} {scene}");
         }
     }
@@ -170,11 +170,11 @@ fn splats_beyond_buffer_limits_take_the_raster_path() {
     let options = RenderOptions { size: [64; 2], ..Default::default() };
     let scene = Scene::upload(&device, &surfels).unwrap();
     let mut renderer = Renderer::new(&device, options).unwrap();
-    renderer.render(&scene, &camera([64; 2]), &Settings::default()).unwrap();
+    renderer.render(&scene, &camera([64; 2]), &splats_alone()).unwrap();
     assert_eq!(renderer.rasterizer(), Some(Rasterizer::Draw));
     let compute = RenderOptions { rasterizer: Rasterizer::Compute.into(), ..options };
     let mut compute = Renderer::new(&device, compute).unwrap();
-    let refused = compute.render(&scene, &camera([64; 2]), &Settings::default());
+    let refused = compute.render(&scene, &camera([64; 2]), &splats_alone());
     assert!(matches!(refused.err(), Some(Error::Usage(text)) if text.contains("65536 texels")));
     assert_silent(&device);
 }
@@ -206,7 +206,7 @@ fn split_passes_render_the_same_picture() {
     for alpha in [Alpha::Mask, Alpha::Coverage] {
         let [fused, split] = [false, true].map(|split| {
             let options = RenderOptions { split, profile: true, ..all_outputs(Rasterizer::Compute) };
-            let settings = Settings { alpha, ..Default::default() };
+            let settings = Settings { alpha, ..splats_alone() };
             let mut renderer = Renderer::new(&device, options).unwrap();
             let (picture, report) = renderer.render_picture(&scene, &camera(SIZE), &settings).unwrap();
             let names: Vec<_> = report.pass_times.iter().map(|time| time.label).collect();

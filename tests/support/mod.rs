@@ -9,6 +9,7 @@ pub mod pyramids;
 pub mod results;
 pub mod sampling;
 pub mod scenes;
+pub mod settings;
 pub mod texture;
 pub mod truth;
 

@@ -5,6 +5,7 @@
 //! that rounding could turn it: such a splat would be right either way, and no comparison could tell.
 
 use super::sampling::{Random, bumpy_sphere, clip, forget_sides, paint_linear, paint_srgb, push, stretch};
+use super::settings::splats_alone;
 use glam::{DMat4, DVec3, DVec4};
 use std::f64::consts::TAU;
 use surfel::Settings;
@@ -112,7 +113,7 @@ fn horizon() -> Case {
         name: "horizon",
         surfels,
         cameras,
-        settings: Settings { shading: Shading::Colour, ..Default::default() },
+        settings: Settings { shading: Shading::Colour, ..splats_alone() },
         size,
     }
 }
@@ -133,7 +134,7 @@ fn edge_on() -> Case {
     };
     let cameras =
         [eye(3.0, 34.0, DVec3::Y), eye(4.5, 22.0, DVec3::new(0.3, 1.0, 0.0)), eye(-6.0, 17.0, DVec3::X)];
-    Case { name: "edge-on", surfels, cameras, settings: Settings::default(), size }
+    Case { name: "edge-on", surfels, cameras, settings: splats_alone(), size }
 }
 
 /// A wavy sheet of splats with a radius of 1/100 px, one for about every pixel.
@@ -159,7 +160,7 @@ fn sub_pixel() -> Case {
         camera([-0.3, -0.9, 2.8], [0.0, 0.05, 0.0], degrees, size, 0.1),
     ];
     // ε is in radii, and the neighbours to blend are many radii away.
-    let settings = Settings { lowpass: 0.5, epsilon: 200.0, ..Default::default() };
+    let settings = Settings { lowpass: 0.5, epsilon: 200.0, ..splats_alone() };
     Case { name: "sub-pixel", surfels, cameras, settings, size }
 }
 
@@ -188,7 +189,7 @@ fn huge() -> Case {
         camera([0.1, 0.05, 4.2], [0.12, 0.1, 0.0], 48.0, size, 0.1),
         camera([-0.3, 0.2, 4.5], [-0.36, 0.26, 0.0], 44.0, size, 0.1),
     ];
-    let mut settings = Settings { epsilon: 4e-3, ..Default::default() };
+    let mut settings = Settings { epsilon: 4e-3, ..splats_alone() };
     settings.lighting.directional = vec![light([0.6, 0.64, 0.48], [0.5, 0.4, 0.3])];
     Case { name: "huge", surfels, cameras, settings, size }
 }
@@ -206,7 +207,7 @@ fn inside() -> Case {
         camera([-0.3, 0.2, 0.1], [0.2, -0.4, 1.0], 90.0, size, 0.01),
         camera([0.4, -0.3, -0.4], [-1.0, 0.7, 0.2], 60.0, size, 0.01),
     ];
-    Case { name: "inside", surfels, cameras, settings: Settings { epsilon: 0.7, ..Default::default() }, size }
+    Case { name: "inside", surfels, cameras, settings: Settings { epsilon: 0.7, ..splats_alone() }, size }
 }
 
 /// Geodetic coordinates: the origin is ten million units away.
@@ -220,7 +221,7 @@ fn far_origin() -> Case {
         Camera::look_at(eye, surfels.origin, DVec3::Y, degrees.to_radians(), 1.0, 0.01).unwrap()
     };
     let cameras = [eye([2.0, 0.5, 2.0], 38.0), eye([-1.5, 1.8, 1.1], 40.0), eye([0.2, -1.2, -2.2], 44.0)];
-    let settings = Settings { cull: Cull::Back, background: Some([0.1, 0.2, 0.3]), ..Default::default() };
+    let settings = Settings { cull: Cull::Back, background: Some([0.1, 0.2, 0.3]), ..splats_alone() };
     Case { name: "far-origin", surfels, cameras, settings, size }
 }
 
@@ -233,7 +234,7 @@ fn orthographic() -> Case {
         Camera::orthographic(view, height, 288.0 / 256.0, [0.5, 6.0]).unwrap()
     };
     let cameras = [eye([2.0, 0.5, 2.0], 2.2), eye([-1.5, 1.8, 1.1], 1.6), eye([0.2, -1.2, -2.2], 2.4)];
-    let settings = Settings { shading: Shading::Normal, cutoff: 2.5, lowpass: 0.6, ..Default::default() };
+    let settings = Settings { shading: Shading::Normal, cutoff: 2.5, lowpass: 0.6, ..splats_alone() };
     Case { name: "orthographic", surfels, cameras, settings, size }
 }
 
@@ -254,7 +255,7 @@ fn off_centre() -> Case {
         eye([-1.5, 1.8, 1.1], [-0.3, 0.2], 40.0),
         eye([0.2, -1.2, -2.2], [0.1, 0.35], 2.2),
     ];
-    let mut settings = Settings { cutoff: 1.8, background: Some([0.0; 3]), ..Default::default() };
+    let mut settings = Settings { cutoff: 1.8, background: Some([0.0; 3]), ..splats_alone() };
     settings.lighting.directional =
         vec![light([0.0, 1.0, 0.0], [0.3, 0.3, 0.2]), light([0.6, 0.0, -0.8], [0.2, 0.1, 0.4])];
     Case { name: "off-centre", surfels, cameras, settings, size }
@@ -278,13 +279,7 @@ fn ellipses() -> Case {
         camera([2.0, 1.1, -1.9], [0.0, 0.0, 0.0], 38.0, size, 0.01),
         camera([0.1, -0.2, 0.15], [1.0, 0.3, 0.4], 80.0, size, 0.01),
     ];
-    Case {
-        name: "ellipses",
-        surfels,
-        cameras,
-        settings: Settings { epsilon: 0.4, ..Default::default() },
-        size,
-    }
+    Case { name: "ellipses", surfels, cameras, settings: Settings { epsilon: 0.4, ..splats_alone() }, size }
 }
 
 /// Ellipses of which a part has no known side, where surfels that face away are culled.
@@ -303,7 +298,7 @@ fn two_sided() -> Case {
         camera([-1.5, 1.8, 1.1], [0.0, 0.0, 0.0], 40.0, size, 0.1),
         parallel([0.2, -1.2, -2.2], 1.8),
     ];
-    let settings = Settings { cull: Cull::Back, epsilon: 0.5, ..Default::default() };
+    let settings = Settings { cull: Cull::Back, epsilon: 0.5, ..splats_alone() };
     Case { name: "two-sided", surfels, cameras, settings, size }
 }
 
@@ -324,13 +319,7 @@ fn clipped() -> Case {
         parallel.unwrap(),
         camera([0.0, 0.75, 1.0], [0.5, 0.6, 0.0], 80.0, size, 0.01),
     ];
-    Case {
-        name: "clipped",
-        surfels,
-        cameras,
-        settings: Settings { epsilon: 0.5, ..Default::default() },
-        size,
-    }
+    Case { name: "clipped", surfels, cameras, settings: Settings { epsilon: 0.5, ..splats_alone() }, size }
 }
 
 /// Right-handed, y up in eye space and down in clip space; `shift` of the principal point in ndc.

@@ -367,8 +367,14 @@ impl Ids {
             kind: kind_name,
             stages: BTreeSet::from([module.stage()]),
         };
-        let writes =
-            kind_name == "STORAGE_IMAGE" || kind_name == "STORAGE_BUFFER" && !(0..members).all(readonly);
+        let is_readonly = match kind_name {
+            "STORAGE_IMAGE" => variable
+                .result_id
+                .is_some_and(|id| self.decorations.contains_key(&(id, Decoration::NonWritable))),
+            "STORAGE_BUFFER" => (0..members).all(readonly),
+            _ => true,
+        };
+        let writes = !is_readonly;
         Ok(Declared { name, resource, writes })
     }
 

@@ -4,7 +4,7 @@ use super::super::record::{Sweep, SweepPoint};
 use crate::error::Result;
 use crate::geometry::{Camera, Colours, Surfels};
 use crate::settings::Precision;
-use crate::settings::{Settings, Shading};
+use crate::settings::{Cull, Settings, Shading};
 use crate::verify::scenes::random::Random;
 use glam::DVec3;
 
@@ -62,7 +62,7 @@ impl Case {
 impl View {
     /// A frame of 128² px that shows the surfels' colours.
     pub fn new(surfels: Surfels, camera: Camera) -> Self {
-        let settings = Settings { shading: Shading::Colour, ..Default::default() };
+        let settings = Settings { shading: Shading::Colour, cull: Cull::None, ..Default::default() };
         Self { surfels, camera, size: [128, 128], settings, note: String::new() }
     }
 }

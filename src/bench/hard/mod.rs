@@ -26,7 +26,7 @@ use crate::error::{Error, Result};
 use crate::frame::{RenderOptions, Renderer, SplatCounts};
 use crate::scene::Scene;
 use crate::settings::methods::Method;
-use crate::settings::{Choice, Outputs, Precision, Rasterizer, Settings};
+use crate::settings::{Alpha, Choice, Outputs, Precision, Rasterizer, Settings};
 use crate::verify::reference::{Counts, Expected, Tolerance};
 use crate::vk::Device;
 use case::{Case, View};
@@ -211,9 +211,10 @@ impl Sweeper<'_> {
         value: f64,
     ) -> Result<Vec<(Variant, SweepPoint)>> {
         let mut view = (case.view)(value)?;
-        // Some cases show the backs of their discs: methods that cull those would show nothing.
+        // Some cases show the backs of their discs: methods that cull those would show nothing. Splats alone: filters and coverage hide errors.
         let Settings { epsilon, shading, cull, .. } = view.settings;
-        view.settings = Settings { epsilon, shading, cull, ..method.settings() };
+        view.settings =
+            Settings { epsilon, shading, cull, alpha: Alpha::Mask, pixel_filter: 0.0, ..method.settings() };
         let expected =
             Expected::new(&view.surfels, &view.camera, view.size, &view.settings, &Tolerance::default())?;
         // Invalid surfels are intended here; the notes report them.

@@ -22,6 +22,6 @@ pub(super) fn plans() -> Vec<Plan> {
         measurements: Measurements::TIME,
         ..plan(Suite::Baseline, Experiment::Baseline, "scene:bumpy-sphere", points, SIZE)
     };
-    let one = |points| engines.map(|engine| Plan { engine, ..plan(points) });
+    let one = |points| engines.map(|engine| plan(points).by_engine(engine));
     [100_000, 1_000_000].map(one).concat()
 }

@@ -153,13 +153,13 @@ fn every(plan: &Plan, methods: &[Method], others: Measurements) -> Vec<Plan> {
 fn baselines(plan: &Plan) -> [Plan; 3] {
     [Engine::Baseline(Kind::Splats), Engine::Baseline(Kind::Pixels), Engine::Traced].map(|engine| {
         let measurements = Measurements { time: engine != Engine::Traced, ..Measurements::BOTH };
-        Plan { engine, measurements, ..plan.clone() }
+        Plan { measurements, ..plan.by_engine(engine) }
     })
 }
 
 /// The same plan by the CPU baseline.
 fn baseline(plan: &Plan, kind: Kind) -> Plan {
-    Plan { engine: Engine::Baseline(kind), ..plan.clone() }
+    plan.by_engine(Engine::Baseline(kind))
 }
 
 /// Cost and benefit of the low-pass filter: its variance, px², from 0 to 1, the kernel's cut-off, σ, and which splats

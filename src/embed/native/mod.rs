@@ -102,7 +102,7 @@ use crate::settings::splatting::Visibility;
 use crate::vk::shaders::layout;
 use crate::vk::{Device, Draws, HostDepth, HostPass, Recorder};
 use ash::vk;
-use plan::{Step, check_method, in_subpasses};
+use plan::{Step, check_method};
 use std::sync::Arc;
 use targets::Targets;
 
@@ -322,7 +322,7 @@ impl Renderer {
     ) -> Result<()> {
         let placed = scenes.into().placed(&self.device)?;
         let TargetView { size, camera, .. } = view.in_target(&self.device, self.plan.host.reversed)?;
-        let settings = in_subpasses(settings);
+        let settings = settings.in_subpasses();
         check_method(&settings)?;
         let frame = self.frame.describe(&placed, &camera, &settings, size)?;
         self.plan.check(&frame.variant)?;
@@ -360,7 +360,7 @@ impl Renderer {
         let TargetView { area, size, camera, depth } =
             view.in_target(&self.device, self.plan.host.reversed)?;
         let targets = self.targets_of(area)?;
-        let settings = in_subpasses(settings);
+        let settings = settings.in_subpasses();
         check_method(&settings)?;
         let mut frame = self.frame.describe(&placed, &camera, &settings, size)?;
         self.plan.check(&frame.variant)?;

@@ -9,7 +9,7 @@ use crate::frame::targets::sums_format;
 use crate::frame::variant::Variant;
 use crate::scene::Streams;
 use crate::settings::splatting::Visibility;
-use crate::settings::{Cull, Outputs, Precision, Rasterizer, Settings};
+use crate::settings::{Outputs, Precision, Rasterizer, Settings};
 use crate::vk::{Device, input_layout};
 use ash::vk;
 
@@ -356,13 +356,6 @@ pub(super) fn check_method(settings: &Settings) -> Result<()> {
     }
 }
 
-/// Settings of subpasses: the picture is blended over the host's; its pixels do not see their neighbours, as a filter of pixels needs; and
-/// there is no visibility before them that tells sides apart.
-pub(super) fn in_subpasses(settings: &Settings) -> Settings {
-    let cull = if settings.cull == Cull::Auto { Cull::None } else { settings.cull };
-    Settings { background: None, pixel_filter: 0.0, cull, ..settings.clone() }
-}
-
 fn variant(
     device: &Device,
     options: &RenderOptions,
@@ -375,5 +368,5 @@ fn variant(
     settings.check_primitives(streams.primitives.any())?;
     let (rasterizer, _) = rasterizer_for(device, options, settings.alpha, Fit::ALL)?;
     let options = RenderOptions { precision: width_of_sums(device, options, rasterizer), ..*options };
-    Ok(Variant::new(&[streams], true, &in_subpasses(settings), &options, rasterizer))
+    Ok(Variant::new(&[streams], true, &settings.in_subpasses(), &options, rasterizer))
 }

@@ -189,7 +189,7 @@ impl OffscreenView {
             self.renderer.measure(Measured { times: measured, counts: measured });
             // SAFETY: the presenter's command buffer is recording outside a render pass, and the presenter submits in order; `draw` runs
             // once per frame, so that the number of frames in flight is as stated.
-            drawn = unsafe { self.renderer.prepare(frame.cmd, scene, &view, settings) };
+            drawn = unsafe { self.renderer.prepare(frame.cmd, scene, &view, &before_background(settings)) };
         }
         if measured && self.timestamps.is_none() {
             self.timestamps = Timestamps::new(&self.device)?;
@@ -318,4 +318,9 @@ impl Targets {
             depth,
         })
     }
+}
+
+/// Settings of a picture that the view draws before the background itself.
+fn before_background(settings: &Settings) -> Settings {
+    Settings { alpha: settings.drawn_alpha(), ..settings.clone() }
 }

@@ -75,7 +75,7 @@ mod tests {
         all
     }
 
-    const RESOURCES: [Resource; 23] = [
+    const RESOURCES: [Resource; 24] = [
         Resource::VisibleClusters,
         Resource::Order,
         Resource::Splats,
@@ -94,6 +94,7 @@ mod tests {
         Resource::Pulled,
         Resource::Pushed,
         Resource::Image,
+        Resource::Filtered,
         Resource::Normal,
         Resource::Depth,
         Resource::Id,

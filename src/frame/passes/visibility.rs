@@ -26,7 +26,7 @@ pub static COMPUTE: Pass = Pass {
 pub static COMPUTE_FRONTS: Pass = Pass {
     name: "visibility",
     reads: &[Splats, Boxes, ScreenClips],
-    writes: &[Visibility, IncompleteFrame],
+    writes: &[Visibility, Coverage, IncompleteFrame],
     clears: &[],
     programs: Programs::OfFrame(|variant| {
         let programs = tiles(variant, [&VISIBILITY_COMPUTE, &VISIBILITY_SUBGROUPS_COMPUTE]);

@@ -8,7 +8,7 @@
 //! normalize    / Σ ψ (equation 7, §6.5)
 //! ```
 
-use super::Method;
+use super::{Method, PIXEL_FILTER};
 use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
 use crate::settings::{Alpha, Cull, Widen};
 
@@ -27,10 +27,10 @@ pub const METHOD: Method = Method {
     pull_push: None,
     cutoff: 2.0,
     lowpass: 0.0,
-    pixel_filter: 0.0,
+    pixel_filter: PIXEL_FILTER,
     widen: Widen::All,
-    cull: Cull::Back,
-    alpha: Alpha::Mask,
+    cull: Cull::Auto,
+    alpha: Alpha::Coverage,
 };
 
 /// The preset as published, with the kernel of figure 18 and of its times: "parameters n = 3, a = 6.0, and b = 1.5" (§7). The paper gives no

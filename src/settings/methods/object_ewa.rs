@@ -12,7 +12,7 @@
 //!
 //! `J` is singular edge-on, where the parallelogram would reach behind the eye: its scale is limited to the range from ½ to 2.
 
-use super::Method;
+use super::{Method, PIXEL_FILTER};
 use crate::geometry::Camera;
 use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
 use crate::settings::{Alpha, Cull, Settings, Widen};
@@ -33,10 +33,10 @@ pub const METHOD: Method = Method {
     // §5.2: ½ y·y ≤ c = 1.
     cutoff: std::f32::consts::SQRT_2,
     lowpass: 1.0,
-    pixel_filter: 0.0,
+    pixel_filter: PIXEL_FILTER,
     widen: Widen::All,
-    cull: Cull::Back,
-    alpha: Alpha::Mask,
+    cull: Cull::Auto,
+    alpha: Alpha::Coverage,
 };
 
 /// The preset as published, of the higher quality: "refined by per-pixel normalization" (§8). That of higher speed needs surfels with

@@ -4,13 +4,14 @@
 //! footprint    disc → the ellipse that its rim projects to (§4.4), + H (equation 3)
 //! visibility   nearest tangent plane + ε along the viewing ray (§6, first pass)
 //! attribute    Σ w (n, rgb, κ) over what is within ε (§6, second pass)
-//! normalize    / Σ w, light (§6, third pass)
+//! normalize    / Σ w, light (§6, third pass), × the covered part of the pixel
+//! filter       ∗ most of H, after light, so that outlines are filtered, too
 //! ```
 //!
-//! Departs from the paper where measurements support it: a cut-off of 2.5 σ, a filter that widens only splats smaller than itself, and
-//! lighting after blending. `perspective-ewa-paper` does not.
+//! Departs from the paper where measurements support it: a cut-off of 3.5 σ, a filter that widens only splats smaller than itself,
+//! lighting and most of the filter after blending, coverage of pixels, and culling of the far sides of surfaces. `perspective-ewa-paper` does not.
 
-use super::Method;
+use super::{Method, PIXEL_FILTER};
 use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
 use crate::settings::{Alpha, Cull, Widen};
 
@@ -24,15 +25,15 @@ pub const METHOD: Method = Method {
         filter: Filter::Screen,
         visibility: Visibility::Ray,
         normalization: Normalization::Pixel,
-        shade: Shade::Pixel,
+        shade: Shade::MeanNormal,
     },
     pull_push: None,
-    cutoff: 2.5,
+    cutoff: 3.5,
     lowpass: 1.0,
-    pixel_filter: 0.0,
+    pixel_filter: PIXEL_FILTER,
     widen: Widen::Small,
-    cull: Cull::None,
-    alpha: Alpha::Mask,
+    cull: Cull::Auto,
+    alpha: Alpha::Coverage,
 };
 
 /// The preset as published. The paper neither lights nor culls by facing: what it blends are the colours of splats (§3). It gives no number for

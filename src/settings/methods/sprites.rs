@@ -10,7 +10,7 @@
 //! `sprites-unfiltered` shows only the nearest ellipse of each pixel (§3.2), in one pass. `sprites-paper` is filtered, too; unfiltered it is
 //! `sprites-paper --visibility nearest --normalization none`.
 
-use super::Method;
+use super::{Method, PIXEL_FILTER};
 use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
 use crate::settings::{Alpha, Cull, Widen};
 
@@ -29,10 +29,10 @@ pub const METHOD: Method = Method {
     pull_push: None,
     cutoff: 2.0,
     lowpass: 0.0,
-    pixel_filter: 0.0,
+    pixel_filter: PIXEL_FILTER,
     widen: Widen::All,
-    cull: Cull::Back,
-    alpha: Alpha::Mask,
+    cull: Cull::Auto,
+    alpha: Alpha::Coverage,
 };
 
 /// The preset of higher speed.
@@ -43,6 +43,10 @@ pub const UNFILTERED: Method = Method {
         normalization: Normalization::None,
         ..METHOD.splatting
     },
+    pixel_filter: 0.0,
+    // Auto takes a visibility pass more.
+    cull: Cull::Back,
+    alpha: Alpha::Mask,
     ..METHOD
 };
 

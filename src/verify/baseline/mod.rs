@@ -35,8 +35,8 @@ use crate::geometry::srgb;
 use crate::geometry::{Camera, Colours, Surfels};
 use crate::picture::Picture;
 use crate::settings::Outputs;
-use crate::settings::splatting::Splatting;
-use crate::settings::{Alpha, Settings, Shading};
+use crate::settings::splatting::{Shade, Splatting};
+use crate::settings::{Alpha, Cull, Settings, Shading, Widen};
 use crate::vk::PassTime;
 use clock::Stages;
 use pixels::Pixels;
@@ -51,8 +51,24 @@ use view::View;
 pub enum Kind {
     /// One pixel per surfel, that of its centre. The nearest surfel wins; of equally near ones the first.
     Pixels,
-    /// The picture of the method `perspective-ewa`.
+    /// Splats of `perspective-ewa` alone: see [`settings`].
     Splats,
+}
+
+/// The settings by which the baseline renders what a frame with `other` settings shows: splats alone, as their cost does not depend on the
+/// presets.
+pub fn settings(other: &Settings) -> Settings {
+    Settings {
+        splatting: Splatting { shade: Shade::Pixel, ..Splatting::default() },
+        pull_push: None,
+        cutoff: 2.5,
+        lowpass: 1.0,
+        pixel_filter: 0.0,
+        widen: Widen::Small,
+        cull: Cull::None,
+        alpha: Alpha::Mask,
+        ..other.clone()
+    }
 }
 
 /// Memory in use, bytes.
@@ -122,8 +138,11 @@ impl Baseline {
     ) -> Result<&[PassTime]> {
         settings.check()?;
         let counts = matches!(settings.shading, Shading::Overlap | Shading::Weight);
-        if settings.splatting != Splatting::default() || counts || settings.alpha != Alpha::Mask {
-            let text = "the CPU baseline draws as perspective-ewa does, with a mask for α, and neither overlaps nor weights: choose those";
+        let own = self::settings(settings);
+        let is_own = (settings.splatting, settings.alpha, settings.pixel_filter)
+            == (own.splatting, own.alpha, own.pixel_filter);
+        if !is_own || counts || settings.cull == Cull::Auto {
+            let text = "the CPU baseline draws splats alone: choose the mask for α, culling other than auto, the other choices of `baseline::settings`, and neither overlaps nor weights";
             return Err(Error::Usage(text.into()));
         }
         let view = View::new(camera, size, self.surfels.origin)?;

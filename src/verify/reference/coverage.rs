@@ -92,7 +92,7 @@ fn certain_and_possible(solid: &Ellipse, offset: DVec2) -> [Mask; 2] {
 
 /// Covered fraction of each pixel of the band, for pixels with a fragment.
 pub(super) fn pass(projector: &Projector, scene: &ProjectedScene, band: &Band) -> Vec<f64> {
-    if projector.settings.alpha == Alpha::Mask {
+    if projector.settings.drawn_alpha() == Alpha::Mask {
         return vec![1.0; band.len()];
     }
     let mut masks = vec![0; band.len()];
@@ -118,7 +118,7 @@ pub(super) struct SampleCounts(RangeInclusive<u32>);
 impl SampleCounts {
     /// Ranges of each pixel of a band.
     pub fn of_band(model: &ErrorModel, scene: &ProjectedScene, band: &Band) -> Vec<Self> {
-        if model.projector.settings.alpha == Alpha::Mask {
+        if model.projector.settings.drawn_alpha() == Alpha::Mask {
             return vec![Self(Mask::BITS..=Mask::BITS); band.len()];
         }
         let mut masks = vec![[0; 2]; band.len()];

@@ -74,7 +74,7 @@ impl Ellipse {
             Widen::Small => (variance + least).max(lowpass),
         };
         let visible = visible_variance(projector);
-        match settings.alpha {
+        match settings.drawn_alpha() {
             Alpha::Mask => Self::new(splat, projector, widened),
             // At least that of visibility, so that every visible pixel has attributes.
             Alpha::Coverage => {
@@ -285,7 +285,7 @@ impl Ellipse {
 /// Maps the variance along an axis of a kernel to that of its visibility footprint, px².
 fn visible_variance(projector: &Projector) -> impl Fn(f64) -> f64 {
     let least = f64::from(projector.settings.least_lowpass());
-    let (alpha, cutoff) = (projector.settings.alpha, projector.cutoff());
+    let (alpha, cutoff) = (projector.settings.drawn_alpha(), projector.cutoff());
     move |variance| match alpha {
         Alpha::Mask => variance + least,
         Alpha::Coverage => (SOLID * variance.sqrt() + HALF_PIXEL / cutoff).powi(2).max(least),

@@ -19,7 +19,7 @@ pub fn filtered(settings: &Settings, colours: &[[f64; 4]], size: [u32; 2]) -> Ve
     let means = convolved(settings, &premultiplied, size);
     let pixel = |(mean, own): (&[f64; 4], &[f64; 4])| {
         let [r, g, b, a] = *mean;
-        let alpha = if settings.alpha == Alpha::Coverage { a } else { own[3] };
+        let alpha = if settings.drawn_alpha() == Alpha::Coverage { a } else { own[3] };
         let colour = if alpha > 0.0 { [r / a, g / a, b / a] } else { [0.0; 3] };
         blended(settings, colour.into(), alpha)
     };

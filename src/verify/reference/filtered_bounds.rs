@@ -57,7 +57,7 @@ impl FilteredBounds {
         let ranges: Vec<_> = pixels.into_iter().map(PixelRange::to_array).collect();
         Self {
             ranges: convolved(settings, &ranges, size),
-            alpha: settings.alpha,
+            alpha: settings.drawn_alpha(),
             background: settings.background.map(|colour| colour.map(f64::from)),
         }
     }

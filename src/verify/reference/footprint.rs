@@ -247,9 +247,9 @@ impl Projector {
     /// Line on the screen beyond which the surface has turned away from the eye: where the tangent plane of a front-facing
     /// surfel is [`TURN_DEPTH`] below the centre. `centre` is in eye space, `plane` as in [`Splat`].
     fn turn_line(&self, surfel: &Surfel, centre: DVec3, plane: DVec3) -> Option<TurnLine> {
-        let Settings { alpha, splatting, .. } = &self.settings;
+        let splatting = &self.settings.splatting;
         let shapes = splatting.footprint.is_in_tangent_plane() && splatting.kernel == Kernel::Gaussian;
-        if *alpha != Alpha::Coverage || !shapes {
+        if self.settings.drawn_alpha() != Alpha::Coverage || !shapes {
             return None;
         }
         let perspective = self.depth.perspective;

@@ -97,12 +97,7 @@ pub(super) fn picture_pixel(projector: &Projector, shown: DVec3, alpha: f64) -> 
 pub(super) fn blended(settings: &Settings, shown: DVec3, alpha: f64) -> [f64; 4] {
     let Some(background) = settings.background else { return shown.extend(alpha).to_array() };
     let behind = DVec3::from_array(background.map(f64::from));
-    // Quantities are not blended with a colour: α ≥ ½ decides.
-    let share = match settings.shading {
-        Shading::Lit | Shading::Colour => alpha,
-        Shading::Normal | Shading::Depth | Shading::Overlap | Shading::Weight => f64::from(alpha >= 0.5),
-    };
-    (share * shown + (1.0 - share) * behind).extend(1.0).to_array()
+    (alpha * shown + (1.0 - alpha) * behind).extend(1.0).to_array()
 }
 
 /// The value of an empty pixel.

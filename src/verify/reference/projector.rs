@@ -47,7 +47,7 @@ impl Projector {
 
     /// Distance up to which a splat has fragments beyond its clip lines, px. They show only where there are no others.
     pub(super) fn clip_reach(&self) -> f64 {
-        if self.settings.alpha == Alpha::Coverage { BEYOND } else { 0.0 }
+        if self.settings.drawn_alpha() == Alpha::Coverage { BEYOND } else { 0.0 }
     }
 
     /// Distance of an eye-space point in front of the eye (perspective) or of the eye plane (orthographic).

@@ -7,7 +7,6 @@ use super::error_model::{DEPTH_TOLERANCE, ErrorModel};
 use super::projected_scene::ProjectedScene;
 use super::rank::Rank;
 use super::{Projector, Splat, visibility};
-use crate::settings::Cull;
 use glam::DVec2;
 use rayon::prelude::*;
 
@@ -18,7 +17,7 @@ const SHIFT_ERROR: f64 = 4.0 / (1 << 24) as f64;
 
 /// The scene without the splats that are dropped.
 pub(super) fn pass(projector: &Projector, scene: ProjectedScene, size: [u32; 2]) -> ProjectedScene {
-    if projector.settings.cull != Cull::Auto {
+    if !projector.settings.finds_sides() {
         return scene;
     }
     let fronts = fronts(&scene);
@@ -41,7 +40,7 @@ pub(super) fn pass(projector: &Projector, scene: ProjectedScene, size: [u32; 2])
 /// [certain](Splat::certain).
 pub(super) fn possible(model: &ErrorModel, scene: ProjectedScene, size: [u32; 2]) -> ProjectedScene {
     let projector = model.projector;
-    if projector.settings.cull != Cull::Auto {
+    if !projector.settings.finds_sides() {
         return scene;
     }
     let fronts = fronts(&scene);

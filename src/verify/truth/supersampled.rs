@@ -37,6 +37,8 @@ pub fn supersampled<'a>(
         )));
     }
     let fine = size.map(|side| SIDE as u32 * side);
+    // This filter takes the place of the frame's.
+    let settings = &Settings { pixel_filter: 0.0, ..settings.clone() };
     let frame = reference::render(parts, camera, fine, settings, progress)?;
     let [width, height] = size.map(|side| side as usize);
     let kernel = Kernel::new(filter, SIDE);
@@ -86,7 +88,7 @@ fn straight([r, g, b, a, all]: [f64; 5]) -> [f32; 4] {
 mod tests {
     use super::*;
     use crate::geometry::{Bounds, Colours, Surfels};
-    use crate::settings::Shading;
+    use crate::settings::{Alpha, Shading};
     use crate::verify::truth::{self, Hit, Options, Traceable};
     use glam::{DVec3, Vec3};
 
@@ -118,8 +120,13 @@ mod tests {
         };
         let eye = DVec3::new(0.3, 0.4, 4.0);
         let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::Y, 0.7, 1.0, 0.1).unwrap();
-        let settings =
-            Settings { shading: Shading::Colour, lowpass: 0.0, background: None, ..Settings::default() };
+        let settings = Settings {
+            shading: Shading::Colour,
+            lowpass: 0.0,
+            alpha: Alpha::Mask,
+            background: None,
+            ..Settings::default()
+        };
         let (filter, size) = (Filter::Gaussian { variance: 1.0 }, [48, 48]);
         let found = supersampled(&disc, &camera, &settings, size, filter, &()).unwrap();
         let options = Options { filter, ..Options::default() };

@@ -44,7 +44,7 @@ fn pixels(level: &Level) -> impl IndexedParallelIterator<Item = (Option<Sample>,
 
 /// α of a pixel that has a disc.
 fn alpha(frame: &Reconstruction, pushed: &Level, at: [i64; 2], decisions: &Decisions) -> f64 {
-    match frame.projector.settings.alpha {
+    match frame.projector.settings.drawn_alpha() {
         Alpha::Mask => 1.0,
         Alpha::Coverage => coverage::of(frame, pushed, at, decisions),
     }

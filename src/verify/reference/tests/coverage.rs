@@ -74,7 +74,8 @@ fn what_is_partly_covered_is_blended_with_the_background() {
         let expected = [alpha * r + (1.0 - alpha) * 0.5, alpha * b + 1.0 - alpha];
         let [r, _, b, opaque] = filled.colour[i];
         assert!((r - expected[0]).abs() < 1e-12 && (b - expected[1]).abs() < 1e-12 && opaque == 1.0);
-        let number = if alpha >= 0.5 { 2.0 } else { 0.5 };
+        // Quantities are not blended: α is a mask.
+        let number = if depths.covered[i] { 2.0 } else { 0.5 };
         assert!((depths.colour[i][0] - number).abs() < 1e-6 && depths.colour[i][3] == 1.0);
         assert_eq!(clear.covered[i], alpha > 0.0);
         partial += usize::from(alpha > 0.0 && alpha < 1.0);

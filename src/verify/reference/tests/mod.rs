@@ -24,9 +24,17 @@ fn parallel() -> Camera {
     Camera::orthographic([DVec3::ZERO, DVec3::Z, DVec3::NEG_Y], 4.0, 1.0, [0.1, 100.0]).unwrap()
 }
 
-/// A σ is half a radius, and every splat is widened.
+/// Splats alone: a σ is half a radius, every splat is drawn and widened, and α is a mask.
 fn plain() -> Settings {
-    Settings { shading: Shading::Colour, cutoff: 2.0, widen: Widen::All, ..Default::default() }
+    Settings {
+        shading: Shading::Colour,
+        cutoff: 2.0,
+        pixel_filter: 0.0,
+        widen: Widen::All,
+        cull: Cull::None,
+        alpha: Alpha::Mask,
+        ..Default::default()
+    }
 }
 
 fn disc(position: DVec3, normal: DVec3, radius: f64) -> Surfel {
