@@ -8,7 +8,7 @@
 #include "lib/frame.glsl"
 #include "lib/background.glsl"
 
-// An invocation filters STRIP pixels of a column, from the rows' sums in a window that moves down; as many as in src/frame/recording.rs.
+// An invocation filters STRIP pixels of a column, from the sums of the last rows; as many as in src/frame/recording.rs.
 layout(local_size_x = 64) in;
 const int STRIP = 16;
 
@@ -17,16 +17,16 @@ layout(constant_id = 31) const bool COVERAGE = false; // α is filtered; otherwi
 layout(set = 1, binding = 3, rgba32f) readonly uniform image2D image_output;
 layout(set = 1, binding = 23, rgba32f) writeonly uniform image2D filtered;
 
-const int RADIUS = int(FILTER_RADIUS), WINDOW = 2 * RADIUS + 1;
+const int RADIUS = int(FILTER_RADIUS), TAPS = 2 * RADIUS + 1;
 
 float weights[RADIUS + 1];
 
-// Weight of a pixel `offset` from the centre of the window; 0 outside the picture.
+// Weight of a pixel at distance `offset`; 0 outside the picture.
 float weight(int offset, int at, int size) {
     return at >= 0 && at < size ? weights[abs(offset)] : 0.0;
 }
 
-// Sum of the weights of a window along a side of the picture.
+// Sum of the weights around a pixel along a side of the picture.
 float total(int centre, int size) {
     float sum = 0.0;
     for (int k = -RADIUS; k <= RADIUS; k++) sum += weight(k, centre + k, size);
@@ -56,16 +56,16 @@ void main() {
     if (x >= size.x) return;
     for (int k = 0; k <= RADIUS; k++) weights[k] = exp(-0.5 / frame.pixel_filter * float(k * k));
     float across = total(x, size.x);
-    vec4 window[WINDOW];
-    for (int k = 0; k < WINDOW; k++) window[k] = vec4(0.0);
+    vec4 rows[TAPS];
+    for (int k = 0; k < TAPS; k++) rows[k] = vec4(0.0);
     int last = min(first + STRIP, size.y) + RADIUS;
     for (int row = first - RADIUS; row < last; row++) {
-        for (int k = 1; k < WINDOW; k++) window[k - 1] = window[k];
-        window[WINDOW - 1] = row_sum(ivec2(x, row), size);
+        for (int k = 1; k < TAPS; k++) rows[k - 1] = rows[k];
+        rows[TAPS - 1] = row_sum(ivec2(x, row), size);
         int y = row - RADIUS;
         if (y < first) continue;
         vec4 sum = vec4(0.0);
-        for (int k = 0; k < WINDOW; k++) sum += weights[abs(k - RADIUS)] * window[k];
+        for (int k = 0; k < TAPS; k++) sum += weights[abs(k - RADIUS)] * rows[k];
         imageStore(filtered, ivec2(x, y), filtered_pixel(ivec2(x, y), sum / (across * total(y, size.y))));
     }
 }

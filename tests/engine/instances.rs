@@ -202,7 +202,7 @@ fn scenes_with_different_streams_match_one_cloud() {
         ("colours", with(&|s| s.shading = Shading::Colour)),
         ("normals", with(&|s| s.shading = Shading::Normal)),
         ("depths", with(&|s| s.shading = Shading::Depth)),
-        ("coverage", with(&|s| s.alpha = Alpha::Coverage)),
+        ("mask", with(&|s| s.alpha = Alpha::Mask)),
         ("axis", with(&|s| s.splatting = axis)),
     ];
     // Each set of targets once: normals and depths are in those of others.
