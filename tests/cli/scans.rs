@@ -46,8 +46,11 @@ fn render(program: &Program, i: usize, path: &Path) -> (bool, Duration) {
     // Names may contain spaces, so the file is passed by a link.
     let (link, png) = (format!("{i}.ply"), format!("{i}.png"));
     std::os::unix::fs::symlink(path, program.path(&link)).unwrap();
+    // What files are refused does not depend on the device, whose pipelines take most of the time of a small picture.
+    let is_small = path.ancestors().any(|folder| folder.ends_with("ply_edge"));
+    let by = if is_small && std::env::var_os("SURFEL_TEST_ALL").is_none() { "--reference" } else { "" };
     // Warnings may precede the error line.
-    let command = format!("render {link} -o {png} --size 128x128 --quiet");
+    let command = format!("render {link} -o {png} --size 128x128 --quiet {by}");
     let run = program.run_with(&command, &[("RUST_LOG", "error")]);
     let took = start.elapsed();
     assert!(took < LONGEST, "{}: {took:?}", path.display());
