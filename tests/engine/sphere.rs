@@ -3,11 +3,12 @@
 use crate::support::gpu::{assert_silent, device, render};
 use crate::support::settings::splats_alone;
 use crate::support::truth::{Differences, Truth};
+use std::sync::Arc;
 use surfel::estimate::Estimate;
-use surfel::geometry::Cloud;
+use surfel::geometry::{Cloud, Surfels};
 use surfel::settings::{Alpha, Cull, Shading};
 use surfel::verify::scenes;
-use surfel::vk::DeviceLimits;
+use surfel::vk::{Device, DeviceLimits};
 use surfel::{Picture, Rasterizer, RenderOptions, Settings};
 
 /// Most pixels outside the sphere's outline that may be covered.
@@ -55,6 +56,19 @@ fn coverage_errors(exact: &[f64], picture: &Picture) -> (f64, usize) {
     (error, pairs().filter(|(exact, alpha)| **exact == 1.0 && *alpha < 0.98).count())
 }
 
+/// The errors of a picture of unlit splats alone, with α and culling.
+fn errors_of(
+    (device, truth): (&Arc<Device>, &Truth),
+    exact: &[f64],
+    surfels: &Surfels,
+    rasterizer: Rasterizer,
+    (alpha, cull): (Alpha, Cull),
+) -> (f64, usize) {
+    let settings = Settings { shading: Shading::Colour, alpha, cull, ..splats_alone() };
+    let options = RenderOptions { size: truth.size(), rasterizer: rasterizer.into(), ..Default::default() };
+    coverage_errors(exact, &render(device, surfels, &truth.camera(), &settings, options))
+}
+
 #[test]
 fn coverage_is_what_the_surface_covers() {
     let Some(device) = device(DeviceLimits::default()) else { return };
@@ -62,12 +76,7 @@ fn coverage_is_what_the_surface_covers() {
     let exact = truth.coverage();
     let surfels = scenes::open("scene:bumpy-sphere?points=1000000&seed=1").unwrap();
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
-        let errors = |alpha| {
-            let settings = Settings { shading: Shading::Colour, alpha, ..splats_alone() };
-            let options =
-                RenderOptions { size: truth.size(), rasterizer: rasterizer.into(), ..Default::default() };
-            coverage_errors(&exact, &render(&device, &surfels, &truth.camera(), &settings, options))
-        };
+        let errors = |alpha| errors_of((&device, &truth), &exact, &surfels, rasterizer, (alpha, Cull::None));
         let [(mask, _), (coverage, gaps)] = [Alpha::Mask, Alpha::Coverage].map(errors);
         println!("{rasterizer:?}: off by {coverage:.0} px with {gaps} gaps; a mask by {mask:.0} px");
         assert!(coverage <= MOST_COVERAGE_ERROR && gaps <= MOST_GAPS, "{rasterizer:?}: {coverage} {gaps}");
@@ -86,18 +95,9 @@ fn coverage_of_large_discs_ends_where_the_surface_turns_away() {
     let (bent, _) = Cloud::from(given.clone()).into_surfels(&Estimate::default(), &()).unwrap();
     assert!(given.curvatures.is_none() && bent.curvatures.is_some());
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
-        let errors = |surfels| {
-            // The far side's discs stand out, too: they show their backs.
-            let settings = Settings {
-                shading: Shading::Colour,
-                alpha: Alpha::Coverage,
-                cull: Cull::Auto,
-                ..splats_alone()
-            };
-            let options =
-                RenderOptions { size: truth.size(), rasterizer: rasterizer.into(), ..Default::default() };
-            coverage_errors(&exact, &render(&device, surfels, &truth.camera(), &settings, options))
-        };
+        // The far side's discs stand out, too: they show their backs.
+        let how = (Alpha::Coverage, Cull::Auto);
+        let errors = |surfels| errors_of((&device, &truth), &exact, surfels, rasterizer, how);
         let [(whole, _), (ended, gaps)] = [&given, &bent].map(errors);
         println!("{rasterizer:?}: off by {ended:.0} px with {gaps} gaps; whole discs by {whole:.0} px");
         assert!(ended <= MOST_OF_WHOLE_DISCS * whole && gaps <= MOST_GAPS, "{ended} of {whole}, {gaps}");
