@@ -12,6 +12,8 @@ mod info;
 mod inputs;
 mod lines;
 mod listings;
+#[path = "../support/matrix.rs"]
+mod matrix;
 mod program;
 mod render;
 mod report;

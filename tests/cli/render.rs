@@ -1,5 +1,6 @@
 //! `surfel render` on a Vulkan device, always under the validation layers.
 
+use crate::matrix::if_whole;
 use crate::program::{Program, scan};
 
 const SPHERE: &str = "scene:bumpy-sphere?points=20000";
@@ -91,10 +92,9 @@ fn pictures_do_not_depend_on_the_width_of_vectors() {
     let Some(program) = Program::with_device("pictures_do_not_depend_on_the_width_of_vectors") else {
         return;
     };
-    for options in
-        ["--alpha coverage", "--visibility axis", "--method sprites-unfiltered", "--method confetti"]
-    {
-        let pictures = ["128", "256", "512"].map(|width| {
+    let all = ["--alpha coverage", "--method confetti", "--visibility axis", "--method sprites-unfiltered"];
+    for options in &all[..if_whole(4, 2)] {
+        let pictures = ["128", "256", "512"][..if_whole(3, 2)].iter().map(|width| {
             let name = format!("{width}.exr");
             let arguments = format!(
                 "render {SPHERE} {options} --layers depth,normal --size 200x150 --validate -o {name}"
@@ -102,7 +102,8 @@ fn pictures_do_not_depend_on_the_width_of_vectors() {
             program.run_with(&arguments, &[("LP_NATIVE_VECTOR_WIDTH", width)]).text();
             std::fs::read(program.path(&name)).unwrap()
         });
-        assert!(pictures[0] == pictures[1] && pictures[1] == pictures[2], "{options}");
+        let pictures: Vec<_> = pictures.collect();
+        assert!(pictures.iter().all(|picture| *picture == pictures[0]), "{options}");
     }
 }
 

@@ -1,5 +1,6 @@
 //! Every file of the scans beside the project.
 
+use crate::matrix::whole_matrix;
 use crate::program::{Program, say_skipped};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
@@ -48,7 +49,7 @@ fn render(program: &Program, i: usize, path: &Path) -> (bool, Duration) {
     std::os::unix::fs::symlink(path, program.path(&link)).unwrap();
     // What files are refused does not depend on the device, whose pipelines take most of the time of a small picture.
     let is_small = path.ancestors().any(|folder| folder.ends_with("ply_edge"));
-    let by = if is_small && std::env::var_os("SURFEL_TEST_ALL").is_none() { "--reference" } else { "" };
+    let by = if is_small && !whole_matrix() { "--reference" } else { "" };
     // Warnings may precede the error line.
     let command = format!("render {link} -o {png} --size 128x128 --quiet {by}");
     let run = program.run_with(&command, &[("RUST_LOG", "error")]);

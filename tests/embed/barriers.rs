@@ -4,13 +4,13 @@ use crate::compare::settings;
 use crate::fixture::{SIZE, assert_silent, camera, open, surfels, upload};
 use crate::host::Host;
 use crate::host::frame::{Frame, Kind, Way};
+use crate::support::methods;
 use crate::{FLOATS, ONE};
 use ash::vk;
 use std::ffi::{CStr, c_void};
 use std::sync::{Arc, Mutex};
 use surfel::Rasterizer;
 use surfel::embed::{Options, Renderer, View};
-use surfel::settings::methods::Method;
 use surfel::vk::Device;
 
 /// Source stages of the barriers on the host's device.
@@ -56,7 +56,7 @@ fn no_barrier_waits_for_everything() {
         let options = Options { rasterizer: rasterizer.into(), ..Options::new(frame.target()) };
         // SAFETY: the target is the frame's.
         let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
-        for method in Method::ALL {
+        for method in methods() {
             let settings = settings(method);
             for number in 0..3 {
                 WAITED_FOR.lock().unwrap().clear();

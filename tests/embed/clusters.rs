@@ -4,10 +4,10 @@
 use crate::inputs::first;
 use crate::raw_buffer::RawBuffer;
 use crate::support::gpu::{assert_silent, device};
-use crate::support::if_whole;
 use crate::support::layouts::Layout;
 use crate::support::placing::turned;
 use crate::support::settings::splats_alone;
+use crate::support::{if_whole, methods};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 use surfel::geometry::{Camera, Colours, Ellipse, Surfels};
@@ -85,7 +85,7 @@ fn frames() -> Vec<Settings> {
         Settings { splatting: axis, ..splats_alone() },
         Settings { alpha: Alpha::Coverage, ..splats_alone() },
     ];
-    Method::ALL.iter().map(Method::settings).chain(others).collect()
+    methods().iter().map(Method::settings).chain(others).collect()
 }
 
 fn render<'a>(

@@ -3,14 +3,13 @@
 use crate::fixture::{assert_silent, open, sphere, upload};
 use crate::host::Host;
 use crate::rig::{Rendered, Rig};
-use crate::support::if_whole;
 use crate::support::settings::splats_alone;
+use crate::support::{if_whole, methods};
 use ash::vk::{self, MemoryPropertyFlags as Flags};
 use std::ptr::NonNull;
 use std::sync::Arc;
 use surfel::Rasterizer;
 use surfel::embed::{HostMemory, MemoryError, MemoryRequest, MemorySource};
-use surfel::settings::methods::Method;
 use surfel::settings::{Alpha, Settings};
 use surfel::vk::Device;
 
@@ -66,7 +65,7 @@ fn device(host: &Host, pattern: [u32; 4]) -> Arc<Device> {
 
 /// Frames of all methods and shapes of edges, by both rasterizers, of spheres that grow: no frame has the memory of one before.
 fn frames(host: &Host, device: &Arc<Device>) -> Vec<(String, Rendered)> {
-    let settings = Method::ALL.iter().map(|method| (method.name, method.settings()));
+    let settings = methods().into_iter().map(|method| (method.name, method.settings()));
     let coverage = ("coverage", Settings { alpha: Alpha::Coverage, ..splats_alone() });
     let settings: Vec<_> = settings.chain([coverage]).collect();
     let mut frames = Vec::new();

@@ -2,7 +2,7 @@
 //! drawn without what cannot be drawn; nothing panics, no picture holds what is no number, and the validation layers are silent.
 
 use crate::support::gpu::{assert_silent, device};
-use crate::support::if_whole;
+use crate::support::methods;
 use glam::{DMat4, DVec3, DVec4, Vec3};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -72,12 +72,6 @@ fn draw(
 ) -> Result<Picture> {
     let scene = Scene::upload(device, surfels)?;
     Ok(Renderer::new(device, options(rasterizer))?.render_picture(&scene, &camera(), settings)?.0)
-}
-
-/// Methods that take other ways through the engine.
-fn methods() -> Vec<Method> {
-    let some = ["perspective-ewa", "sprites", "pull-push"].map(|name| Method::named(name).unwrap());
-    if_whole(Method::ALL.to_vec(), some.to_vec())
 }
 
 #[test]

@@ -2,8 +2,8 @@
 //! one merged cloud.
 
 use crate::support::gpu::{Renderers, assert_silent, device};
-use crate::support::if_whole;
 use crate::support::placing::{exact, lines, merged, moved_lines, painted, plain, rich, turned, weighted};
+use crate::support::{if_whole, methods};
 use glam::{DMat4, DVec3};
 use std::sync::Arc;
 use surfel::geometry::{Camera, Model, Primitives, Surfels};
@@ -98,7 +98,7 @@ fn an_identity_placement_renders_the_frame_of_the_scene() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let surfels = rich(3_000);
     let scene = Arc::new(Scene::upload(&device, &surfels).unwrap());
-    for method in Method::ALL {
+    for method in methods() {
         for rasterizer in RASTERIZERS {
             let mut renderer = Renderer::new(&device, options(rasterizer)).unwrap();
             let settings = settings(method.name);
@@ -363,8 +363,8 @@ fn many_instances_match_one_cloud_and_none_render_nothing() {
     let list: Vec<_> =
         (0..90).map(|i| Instance::new(if is_of_few(&i) { &of_few } else { &of_many }, place(i))).collect();
     let parts: Vec<_> = (0..90).map(|i| (if is_of_few(&i) { &few } else { &many }, place(i))).collect();
-    for (i, method) in Method::ALL.into_iter().enumerate() {
-        for &rasterizer in &RASTERIZERS[if_whole(0..2, i % 2..i % 2 + 1)] {
+    for method in methods() {
+        for rasterizer in RASTERIZERS {
             let settings = settings(method.name);
             let mut renderer = Renderer::new(&device, options(rasterizer)).unwrap();
             let (picture, _) = renderer.render_picture(&list, &perspective(), &settings).unwrap();

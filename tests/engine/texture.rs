@@ -1,6 +1,7 @@
 //! A sphere with a texture against rays through it.
 
 use crate::support::gpu::{assert_silent, device, render};
+use crate::support::methods;
 use crate::support::texture::{exact, textured};
 #[allow(dead_code)] // of what is shared
 use glam::{DVec2, DVec3, Vec2, Vec3};
@@ -107,7 +108,7 @@ fn every_method_shows_the_texture() {
     let model = sphere(100_000);
     // The nearest splat alone is a tile.
     let most = |method: &Method| if method.name == "sprites-unfiltered" { 0.2 } else { 0.12 };
-    for method in Method::ALL {
+    for method in methods() {
         let settings = Settings { background: None, ..settings(method) };
         let own = reference::render(&model, &camera(), [SIDE; 2], &settings, &()).unwrap().to_picture();
         let gpu = render(&device, &model, &camera(), &settings, options);

@@ -3,6 +3,7 @@
 
 pub mod gpu;
 pub mod layouts;
+pub mod matrix;
 pub mod mesh;
 pub mod placing;
 pub mod pyramids;
@@ -13,12 +14,11 @@ pub mod settings;
 pub mod texture;
 pub mod truth;
 
-/// Whether every combination is tested, as `tools/test --all` does, rather than some of each choice.
-pub fn whole_matrix() -> bool {
-    std::env::var_os("SURFEL_TEST_ALL").is_some()
-}
+pub use matrix::if_whole;
+use surfel::settings::methods::Method;
 
-/// The first in the whole matrix, else the second.
-pub fn if_whole<T>(whole: T, short: T) -> T {
-    if whole_matrix() { whole } else { short }
+/// All presets in the whole matrix, otherwise one of each list of passes.
+pub fn methods() -> Vec<Method> {
+    let some = ["perspective-ewa", "sprites-unfiltered", "confetti", "pull-push"];
+    if_whole(Method::ALL.to_vec(), some.map(|name| Method::named(name).unwrap()).to_vec())
 }
