@@ -8,9 +8,10 @@
 #include "lib/frame.glsl"
 #include "lib/background.glsl"
 
-// An invocation filters STRIP pixels of a column, from the sums of the last rows; as many as in src/frame/recording.rs.
-layout(local_size_x = 64) in;
-const int STRIP = 16;
+// An invocation filters a block of pixels row by row, from the sums of the last rows; COLUMNS and BLOCK_ROWS as in src/frame/recording.rs.
+// Neighbouring columns share what they load.
+layout(local_size_x = 16, local_size_y = 4) in;
+const int COLUMNS = 4, BLOCK_ROWS = 16;
 
 layout(constant_id = 31) const bool COVERAGE = false; // α is filtered; otherwise it stays, and only pixels with a surface have a colour
 
@@ -21,28 +22,28 @@ const int RADIUS = int(FILTER_RADIUS), TAPS = 2 * RADIUS + 1;
 
 float weights[RADIUS + 1];
 
-// Weight of a pixel at distance `offset`; 0 outside the picture.
-float weight(int offset, int at, int size) {
-    return at >= 0 && at < size ? weights[abs(offset)] : 0.0;
-}
-
-// Sum of the weights around a pixel along a side of the picture.
+// Sum of the weights of the pixels around one along a side of the picture.
 float total(int centre, int size) {
     float sum = 0.0;
-    for (int k = -RADIUS; k <= RADIUS; k++) sum += weight(k, centre + k, size);
+    for (int k = -RADIUS; k <= RADIUS; k++) sum += centre + k >= 0 && centre + k < size ? weights[abs(k)] : 0.0;
     return sum;
 }
 
-// Weighted sum along a row; rgb are premultiplied by α.
-vec4 row_sum(ivec2 pixel, ivec2 size) {
-    vec4 sum = vec4(0.0);
-    if (pixel.y < 0 || pixel.y >= size.y) return sum;
-    for (int k = -RADIUS; k <= RADIUS; k++) {
-        int x = pixel.x + k;
-        vec4 value = imageLoad(image_output, ivec2(clamp(x, 0, size.x - 1), pixel.y));
-        sum += weight(k, x, size.x) * vec4(value.a * value.rgb, value.a);
+// Premultiplied by α; 0 outside the picture.
+vec4 load(ivec2 pixel, ivec2 size) {
+    ivec2 inside = clamp(pixel, ivec2(0), size - 1);
+    vec4 value = imageLoad(image_output, inside);
+    return inside == pixel ? vec4(value.a * value.rgb, value.a) : vec4(0.0);
+}
+
+// Weighted sums along a row, of the pixels from `first` on.
+void sum_row(ivec2 first, ivec2 size, out vec4 sums[COLUMNS]) {
+    vec4 values[COLUMNS + 2 * RADIUS];
+    for (int k = 0; k < COLUMNS + 2 * RADIUS; k++) values[k] = load(first + ivec2(k - RADIUS, 0), size);
+    for (int c = 0; c < COLUMNS; c++) {
+        sums[c] = vec4(0.0);
+        for (int k = 0; k < TAPS; k++) sums[c] += weights[abs(k - RADIUS)] * values[c + k];
     }
-    return sum;
 }
 
 vec4 filtered_pixel(ivec2 pixel, vec4 mean) {
@@ -51,22 +52,25 @@ vec4 filtered_pixel(ivec2 pixel, vec4 mean) {
 }
 
 void main() {
-    ivec2 size = ivec2(frame.viewport);
-    int x = int(gl_GlobalInvocationID.x), first = STRIP * int(gl_GlobalInvocationID.y);
-    if (x >= size.x) return;
+    ivec2 size = ivec2(frame.viewport), first = ivec2(COLUMNS, BLOCK_ROWS) * ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(first, size))) return;
     for (int k = 0; k <= RADIUS; k++) weights[k] = exp(-0.5 / frame.pixel_filter * float(k * k));
-    float across = total(x, size.x);
-    vec4 rows[TAPS];
-    for (int k = 0; k < TAPS; k++) rows[k] = vec4(0.0);
-    int last = min(first + STRIP, size.y) + RADIUS;
-    for (int row = first - RADIUS; row < last; row++) {
+    float across[COLUMNS];
+    for (int c = 0; c < COLUMNS; c++) across[c] = total(first.x + c, size.x);
+    vec4 rows[TAPS][COLUMNS];
+    int last = min(first.y + BLOCK_ROWS, size.y) + RADIUS;
+    for (int row = first.y - RADIUS; row < last; row++) {
         for (int k = 1; k < TAPS; k++) rows[k - 1] = rows[k];
-        rows[TAPS - 1] = row_sum(ivec2(x, row), size);
+        sum_row(ivec2(first.x, row), size, rows[TAPS - 1]);
         int y = row - RADIUS;
-        if (y < first) continue;
-        vec4 sum = vec4(0.0);
-        for (int k = 0; k < TAPS; k++) sum += weights[abs(k - RADIUS)] * rows[k];
-        imageStore(filtered, ivec2(x, y), filtered_pixel(ivec2(x, y), sum / (across * total(y, size.y))));
+        if (y < first.y) continue;
+        float down = total(y, size.y);
+        for (int c = 0; c < COLUMNS; c++) {
+            ivec2 pixel = ivec2(first.x + c, y);
+            vec4 sum = vec4(0.0);
+            for (int k = 0; k < TAPS; k++) sum += weights[abs(k - RADIUS)] * rows[k][c];
+            if (pixel.x < size.x) imageStore(filtered, pixel, filtered_pixel(pixel, sum / (across[c] * down)));
+        }
     }
 }
 

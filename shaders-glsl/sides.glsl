@@ -1,5 +1,6 @@
 // Sides: drops splats that face away from the eye where a surface that faces it hides them or lies at most a radius behind their centres:
-// the far side of a closed surface, which would shine past outlines as if it faced the eye. Others are the back of an open surface.
+// the far side of a closed surface, which would shine past outlines as if it faced the eye. Others are the back of an open surface, and open
+// the tiles that they may change, if these have been drawn without them.
 #version 450
 #pragma variant TILES COMPUTE
 #extension GL_GOOGLE_include_directive : require
@@ -26,7 +27,30 @@ layout(local_size_x = 64) in;
 #include "lib/box.glsl"
 #include "lib/pixels.glsl"
 
-layout(set = 0, binding = 19, std430) writeonly buffer SplatBoxes { Box splat_boxes[]; };
+layout(set = 0, binding = 19, std430) buffer SplatBoxes { Box splat_boxes[]; };
+
+layout(constant_id = 71) const bool OPENS_TILES = false;
+
+#include "lib/open_tiles.glsl"
+
+// Most tiles of a splat that opens those alone; larger ones open all.
+const uint MOST_OPENED = 4096;
+
+// Opens the tiles that a splat may change.
+void open_tiles_of(Box box) {
+    uvec2 last_tile = tile_counts() - 1;
+    uvec4 bounds = corners(box) / TILE_SIDE;
+    uvec2 low = min(bounds.xy, last_tile), high = min(bounds.zw, last_tile), size = high - low + 1;
+    if (size.x * size.y > MOST_OPENED) {
+        open.all = 1;
+        return;
+    }
+    for (uint k = 0; k < size.x * size.y; k++) {
+        uvec2 tile = low + uvec2(k % size.x, k / size.x);
+        uint i = tile_index(tile);
+        if (nearest_key(box) > uintBitsToFloat(open.tiles[i].key)) open.tiles[i].key = OPEN;
+    }
+}
 
 float front_key(uvec2 pixel) {
     return uintBitsToFloat(visibility[pixel_index(ivec2(pixel))] & ~FULL_PIXEL);
@@ -72,7 +96,12 @@ void main() {
     if (!has_surfel(slot)) return;
     Splat splat = splat_of(slot);
     if (!is_drawn(splat) || !is_back(splat)) return;
-    if (front_key(uvec2(anchor_of(splat))) < key_behind(splat)) return;
+    if (front_key(uvec2(anchor_of(splat))) < key_behind(splat)) {
+#ifdef TILES
+        if (OPENS_TILES) open_tiles_of(splat_boxes[splat_index(slot)]);
+#endif
+        return;
+    }
     store_culled(splat_index(slot));
 #ifdef TILES
     splat_boxes[splat_index(slot)] = EMPTY_BOX;

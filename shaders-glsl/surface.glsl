@@ -1,4 +1,5 @@
-// Surface: runs visibility, attribute and normalize per tile in one dispatch, without intermediate targets (zwicker2004 §6).
+// Surface: runs visibility, attribute and normalize per tile in one dispatch, without intermediate targets (zwicker2004 §6). Frames that
+// cull some splats that face away first draw those that face the eye; a second dispatch draws open tiles again.
 #version 450
 #pragma variant SUBGROUPS COMPUTE
 #extension GL_GOOGLE_include_directive : require
@@ -6,6 +7,7 @@
 
 #ifdef COMPUTE
 
+#define VISIBILITY_ACCESS
 #include "lib/frame.glsl"
 #include "lib/picture_pixel.glsl"
 #include "lib/splat.glsl"
@@ -14,17 +16,36 @@
 #include "lib/tile_visibility.glsl"
 #include "lib/tile_coverage.glsl"
 #include "lib/tile_attribute.glsl"
+#include "lib/open_tiles.glsl"
+
+void load_depths(uvec2 origin) {
+    for (uint r = 0; r < ROWS; r++) {
+        uvec2 pixel = origin + lane_pixel(r);
+        load_depth(r, visibility[is_in_viewport(pixel) ? pixel_index(ivec2(pixel)) : 0]);
+    }
+}
+
+void store_depths(uvec2 origin) {
+    for (uint r = 0; r < ROWS; r++) {
+        uvec2 pixel = origin + lane_pixel(r);
+        if (is_in_viewport(pixel)) visibility[pixel_index(ivec2(pixel))] = depth_bits(r);
+    }
+}
+
+// Stores the κ behind which splats do not change the tile: 0 if it has empty pixels, or uncovered samples, which hidden splats cover, too.
+void store_key(uvec2 origin) {
+    bool is_covered = !COVERAGE || coverage_cull_key > 0.0;
+    if (lane == 0) open.tiles[tile_index(origin / TILE)].key = is_covered ? floatBitsToUint(visibility_cull_key) : 0;
+}
 
 void main() {
     load_frame();
-    uvec2 origin = tile_origin();
-    for (uint r = 0; r < ROWS; r++) {
-        uvec2 pixel = origin + lane_pixel(r);
-        uint index = is_in_viewport(pixel) ? pixel_index(ivec2(pixel)) : 0;
-        if (has_depths()) load_depth(r, visibility[index]);
-    }
+    uvec2 origin = HAS_FRONTS ? listed_origin() : tile_origin();
+    if (has_depths()) load_depths(origin);
     compute_visibility(origin);
+    if (FRONTS) store_depths(origin);
     if (COVERAGE) compute_coverage(origin);
+    if (FRONTS) store_key(origin);
     sum_attributes(origin);
     report_incomplete();
     for (uint r = 0; r < ROWS; r++) {

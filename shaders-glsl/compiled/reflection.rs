@@ -480,6 +480,16 @@ pub static NORMALIZE_SUBPASS_COVERAGE_FRAGMENT: Module = Module {
     push: size_of::<layout::Subpass>() as u32,
 };
 
+/// The compute stage of `shaders-glsl/open.glsl`.
+pub static OPEN_COMPUTE: Module = Module {
+    name: "open_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("open_compute.spv"),
+    constants: &[],
+    resources: &[(&resource::FRAME, false), (&resource::OPEN_TILES, true)],
+    push: 0,
+};
+
 /// The compute stage of `shaders-glsl/order.glsl`.
 pub static ORDER_COMPUTE: Module = Module {
     name: "order_compute",
@@ -695,8 +705,8 @@ pub static SIDES_TILES_COMPUTE: Module = Module {
     name: "sides_tiles_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("sides_tiles_compute.spv"),
-    constants: &[0, 2, 15, 37, 63],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, true), (&resource::SPLAT_BOXES, true), (&resource::VISIBLE_CLUSTERS, false), (&resource::VISIBILITY, false), (&resource::COUNTS, true)],
+    constants: &[0, 2, 15, 37, 63, 71],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, true), (&resource::SPLAT_BOXES, true), (&resource::VISIBLE_CLUSTERS, false), (&resource::VISIBILITY, false), (&resource::OPEN_TILES, true), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -706,7 +716,7 @@ pub static SURFACE_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_compute.spv"),
     constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 66, 67, 68, 69, 70],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::OPEN_TILES, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
 
@@ -716,7 +726,7 @@ pub static SURFACE_SUBGROUPS_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_subgroups_compute.spv"),
     constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 66, 67, 68, 69, 70],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false), (&resource::OPEN_TILES, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
 
@@ -878,6 +888,8 @@ pub mod constant {
     pub const NORMAL_OFFSET: u32 = 52;
     /// `NORMAL_STRIDE`, first in `shaders-glsl/attribute.glsl`.
     pub const NORMAL_STRIDE: u32 = 53;
+    /// `OPENS_TILES`, first in `shaders-glsl/sides.glsl`.
+    pub const OPENS_TILES: u32 = 71;
     /// `OUT_DEPTH`, first in `shaders-glsl/nearest.glsl`.
     pub const OUT_DEPTH: u32 = 10;
     /// `OUT_NORMAL`, first in `shaders-glsl/nearest.glsl`.
@@ -1120,6 +1132,15 @@ pub mod resource {
         binding: 3,
         kind: DescriptorType::STORAGE_BUFFER,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
+    };
+
+    /// `OpenTiles`, first in `shaders-glsl/open.glsl`.
+    pub static OPEN_TILES: Resource = Resource {
+        name: "OpenTiles",
+        set: 1,
+        binding: 24,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
     /// `Order`, first in `shaders-glsl/footprint.glsl`.
@@ -1894,6 +1915,41 @@ pub mod layout {
     }
     const _: () = assert!(std::mem::offset_of!(Materials, count) == 0);
     const _: () = assert!(std::mem::size_of::<Materials>() == 4);
+
+    /// `OpenTile`, 8 bytes, first in `shaders-glsl/open.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct OpenTile {
+        /// Byte 0.
+        pub key: u32,
+        /// Byte 4.
+        pub listed: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(OpenTile, key) == 0);
+    const _: () = assert!(std::mem::offset_of!(OpenTile, listed) == 4);
+    const _: () = assert!(std::mem::size_of::<OpenTile>() == 8);
+
+    /// `OpenTiles`, 20 bytes, first in `shaders-glsl/open.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct OpenTiles {
+        /// Byte 0.
+        pub columns: u32,
+        /// Byte 4.
+        pub rows: u32,
+        /// Byte 8.
+        pub layers: u32,
+        /// Byte 12.
+        pub listed_count: u32,
+        /// Byte 16.
+        pub all: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(OpenTiles, columns) == 0);
+    const _: () = assert!(std::mem::offset_of!(OpenTiles, rows) == 4);
+    const _: () = assert!(std::mem::offset_of!(OpenTiles, layers) == 8);
+    const _: () = assert!(std::mem::offset_of!(OpenTiles, listed_count) == 12);
+    const _: () = assert!(std::mem::offset_of!(OpenTiles, all) == 16);
+    const _: () = assert!(std::mem::size_of::<OpenTiles>() == 20);
 
     /// `OrderStep`, 32 bytes, first in `shaders-glsl/order.glsl`.
     #[repr(C)]

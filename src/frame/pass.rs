@@ -125,10 +125,14 @@ pub enum Domain {
     PixelsOfTriangles,
     /// One invocation per pixel.
     Pixels,
-    /// One invocation per strip of a column of pixels.
-    Strips,
+    /// One invocation per block of pixels.
+    Blocks,
     /// One workgroup per tile.
     Tiles,
+    /// One invocation per tile.
+    TileSlots,
+    /// One workgroup per tile in the list of open ones.
+    OpenTiles,
     /// Elements of a level, as the steps of the pass define.
     Level,
     /// One triangle per splat.
@@ -167,7 +171,13 @@ impl Domain {
             Self::Clusters => Scope::Clusters,
             Self::Lines | Self::PixelsOfLines => Scope::Lines,
             Self::Triangles | Self::LargeTriangles | Self::PixelsOfTriangles => Scope::Triangles,
-            Self::Pixels | Self::Strips | Self::Tiles | Self::Level | Self::FullScreen => Scope::View,
+            Self::Pixels
+            | Self::Blocks
+            | Self::Tiles
+            | Self::TileSlots
+            | Self::OpenTiles
+            | Self::Level
+            | Self::FullScreen => Scope::View,
         }
     }
 }

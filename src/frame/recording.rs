@@ -30,12 +30,12 @@ pub fn grid_over_pixels([width, height]: [u32; 2]) -> [u32; 3] {
     [width.div_ceil(PIXEL_GROUP[0]), height.div_ceil(PIXEL_GROUP[1]), 1]
 }
 
-/// Pixels of a strip (`filter.glsl`).
-const STRIP: u32 = 16;
+/// Columns and rows of pixels of a workgroup of `filter.glsl`: of its invocations' blocks.
+const BLOCK_GROUP: [u32; 2] = [16 * 4, 4 * 16];
 
-/// Workgroups for an invocation per strip of a column.
-fn grid_over_strips([width, height]: [u32; 2]) -> [u32; 3] {
-    [width.div_ceil(WORKGROUP as u32), height.div_ceil(STRIP), 1]
+/// Workgroups for an invocation per block of pixels.
+fn grid_over_blocks([width, height]: [u32; 2]) -> [u32; 3] {
+    [width.div_ceil(BLOCK_GROUP[0]), height.div_ceil(BLOCK_GROUP[1]), 1]
 }
 
 /// Workgroups for so many invocations, in rows: for shaders that index by both coordinates.
@@ -171,8 +171,17 @@ impl PreparedPass {
                         let hierarchy = splats.hierarchy(slices, frame.most_steps(), frame.number);
                         enc.dispatch(pipeline, &sets, &hierarchy, [columns, rows, 1]);
                     }
-                    (Domain::Strips, _) => {
-                        enc.dispatch(pipeline, &sets, &(), grid_over_strips(frame.targets.size));
+                    (Domain::OpenTiles, Some(splats)) => {
+                        let Some(list) = frame.targets.buffer(Resource::OpenTiles) else { continue };
+                        let hierarchy = splats.hierarchy([0, 1], frame.most_steps(), frame.number);
+                        enc.dispatch_indirect(pipeline, &sets, &hierarchy, (list, 0));
+                    }
+                    (Domain::TileSlots, _) => {
+                        let [columns, rows] = frame.targets.tiles().map(u64::from);
+                        enc.dispatch(pipeline, &sets, &(), grid_over(columns * rows));
+                    }
+                    (Domain::Blocks, _) => {
+                        enc.dispatch(pipeline, &sets, &(), grid_over_blocks(frame.targets.size));
                     }
                     _ => enc.dispatch(pipeline, &sets, &(), grid_over_pixels(frame.targets.size)),
                 }
@@ -339,7 +348,12 @@ impl Pass {
         let touched = touched.filter(|(_, stages, _)| !stages.is_empty());
         let access = |(resource, stages, write)| {
             let access = Access::of_shader(stages, write);
-            let indirect = resource == Resource::VisibleClusters && !write;
+            let over_open = programs.iter().any(|program| program.domain == Domain::OpenTiles);
+            let indirect = match resource {
+                Resource::VisibleClusters => !write,
+                Resource::OpenTiles => over_open,
+                _ => false,
+            };
             (resource, if indirect { access.and_indirect() } else { access })
         };
         let mut list: Vec<_> = touched.map(access).collect();

@@ -25,6 +25,8 @@ pub enum Resource {
     Sums0,
     /// `(Σw κ, Σw rgb)`, if the frame needs depth, or colours and normals.
     Sums1,
+    /// Tile path: the tiles that splats that face away may change, after the workgroups of an indirect dispatch over them.
+    OpenTiles,
     /// Mask of each pixel's covered samples, if α is coverage.
     Coverage,
     /// Distance and id of the nearest point of each pixel.
@@ -68,6 +70,7 @@ impl Resource {
             Self::Visibility => "visibility",
             Self::Sums0 => "sums0",
             Self::Sums1 => "sums1",
+            Self::OpenTiles => "open tiles",
             Self::Coverage => "coverage",
             Self::Nearest => "nearest",
             Self::NearestDepth => "nearest_depth",

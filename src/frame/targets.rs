@@ -7,6 +7,7 @@ use super::variant::Variant;
 use crate::error::{Error, Result};
 use crate::settings::splatting::Visibility;
 use crate::settings::{Outputs, Precision, Rasterizer};
+use crate::vk::shaders::layout::OpenTile;
 use crate::vk::shaders::{self, resource};
 use crate::vk::{
     Access, Attachment, Binding, Buffer, Capabilities, DescriptorSet, Device, Encoder, Image, ImageUse, Use,
@@ -36,7 +37,14 @@ pub enum Kind {
     Image(ImageUse),
     /// A buffer of so many bytes per pixel, row by row from the top left.
     Pixels(u64),
+    /// A list of tiles, [`OPEN_TILE`] bytes for each tile of the picture, after [`OPEN_HEADER`] bytes.
+    Tiles,
 }
+
+/// Bytes of a list of open tiles before its tiles: workgroups of the dispatch over them, their number, whether all are (`lib/open_tiles.glsl`).
+const OPEN_HEADER: u64 = 24;
+/// Bytes of a tile in it.
+const OPEN_TILE: u64 = size_of::<OpenTile>() as u64;
 
 /// The targets of a frame.
 pub struct RenderTargets {
@@ -96,6 +104,7 @@ impl Resource {
             }
             Self::Sums0 => &[&resource::SUMS0, &resource::SUMS0_IMAGE, &resource::SUMS0_INPUT],
             Self::Sums1 => &[&resource::SUMS1, &resource::SUMS1_IMAGE, &resource::SUMS1_INPUT],
+            Self::OpenTiles => &[&resource::OPEN_TILES],
             Self::Coverage => &[&resource::COVERAGE],
             Self::Nearest => &[&resource::NEAREST],
             Self::NearestDepth => &[&resource::NEAREST_DEPTH],
@@ -161,6 +170,14 @@ pub fn sums_format(precision: Precision, wide: bool) -> Format {
 /// Bytes of coverage per pixel: one bit per sample.
 const COVERAGE: u64 = 4;
 
+/// The list of open tiles.
+const OPEN_TILES: TargetDescription = TargetDescription {
+    resource: Resource::OpenTiles,
+    format: Format::R32_UINT,
+    kind: Kind::Tiles,
+    shader: Some(&resource::OPEN_TILES),
+};
+
 /// The coverage mask.
 fn coverage(variant: &Variant) -> Option<TargetDescription> {
     let coverage = pixels(Resource::Coverage, Format::R32_UINT, COVERAGE, &resource::COVERAGE);
@@ -209,7 +226,9 @@ fn compute_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
     let outputs = stored_outputs(variant.outputs).into_iter();
     let visibility = pixels(Resource::Visibility, Format::R32_UINT, 4, &resource::VISIBILITY);
     if !variant.split && !variant.sliced {
-        return std::iter::once(variant.cull_auto.then_some(visibility)).chain(outputs).collect();
+        let visibility = variant.cull_auto.then_some(visibility);
+        let open = variant.opens_tiles().then_some(OPEN_TILES);
+        return [visibility, open].into_iter().chain(outputs).collect();
     }
     if variant.visibility == Visibility::Nearest {
         // State between the slices of the nearest pass: depths and ids of splats.
@@ -267,17 +286,18 @@ fn splat_resources(variant: &Variant) -> Vec<&'static shaders::Resource> {
     of_splats.iter().copied().chain(others).chain(clips).collect()
 }
 
-/// Bytes of a target's pixel.
-pub fn pixel_size(target: &TargetDescription) -> u64 {
+/// Bytes of a target per pixel.
+pub fn pixel_size(target: &TargetDescription) -> f64 {
     match target.kind {
-        Kind::Image(_) => pixel_bytes(target.format),
-        Kind::Pixels(bytes) => bytes,
+        Kind::Image(_) => pixel_bytes(target.format) as f64,
+        Kind::Pixels(bytes) => bytes as f64,
+        Kind::Tiles => OPEN_TILE as f64 / f64::from(TILE * TILE),
     }
 }
 
 /// Bytes per pixel of a frame's targets.
 pub fn per_pixel(variant: &Variant) -> PerPixel {
-    let named = |target: &TargetDescription| (target.resource.name(), pixel_size(target) as f64);
+    let named = |target: &TargetDescription| (target.resource.name(), pixel_size(target));
     let mut list: PerPixel = describe(variant).iter().map(named).collect();
     if variant.pull_push.is_some() {
         // The picture is last.
@@ -299,6 +319,11 @@ pub fn stage_targets_fit(capabilities: &Capabilities, size: [u32; 2]) -> bool {
 /// Number of pixels.
 pub fn pixels_of(size: [u32; 2]) -> u64 {
     u64::from(size[0]) * u64::from(size[1])
+}
+
+/// Columns and rows of tiles of a picture.
+fn tiles_of(size: [u32; 2]) -> [u32; 2] {
+    size.map(|side| side.div_ceil(TILE))
 }
 
 /// Rejects sizes beyond the limits of `device`.
@@ -325,6 +350,10 @@ impl RenderTargets {
                 Kind::Image(also) => Memory::Image(Image::target(device, name, target.format, size, also)?),
                 Kind::Pixels(bytes) => {
                     Memory::Buffer(Buffer::storage(device, name, bytes * pixels_of(size))?)
+                }
+                Kind::Tiles => {
+                    let bytes = OPEN_HEADER + OPEN_TILE * pixels_of(tiles_of(size));
+                    Memory::Buffer(Buffer::indirect(device, name, bytes)?)
                 }
             };
             Ok((target, memory))
@@ -404,6 +433,7 @@ impl RenderTargets {
     pub fn clear(&self, enc: &mut Encoder<'_, '_>, resource: Resource) {
         match (self.buffer(resource), resource) {
             (Some(buffer), Resource::Nearest) => enc.ones(buffer),
+            (Some(buffer), Resource::OpenTiles) => enc.zero_range(buffer, 0, OPEN_HEADER),
             (Some(buffer), _) => enc.zero(buffer),
             (None, _) => {}
         }
@@ -428,7 +458,7 @@ impl RenderTargets {
 
     /// Columns and rows of tiles.
     pub fn tiles(&self) -> [u32; 2] {
-        self.size.map(|side| side.div_ceil(TILE))
+        tiles_of(self.size)
     }
 
     /// All targets.

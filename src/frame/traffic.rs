@@ -67,7 +67,9 @@ impl PassTraffic {
 
 /// The clear before a pass.
 fn cleared(pass: &Pass, variant: &Variant) -> PassTraffic {
-    let pixel = pass.clears.iter().map(|resource| per_pixel(*resource, variant)).sum();
+    // Of lists, only the lengths are.
+    let cleared = pass.clears.iter().filter(|resource| **resource != Resource::OpenTiles);
+    let pixel = cleared.map(|resource| per_pixel(*resource, variant)).sum();
     PassTraffic { name: "clear", pixel, ..PassTraffic::default() }
 }
 
@@ -91,6 +93,10 @@ fn declared(pass: &Pass, variant: &SceneVariant, scene: &Streams) -> PassTraffic
     }
     let over =
         |domains: &[Domain]| programs.iter().any(|program: &Program| domains.contains(&program.domain));
+    if over(&[Domain::OpenTiles]) {
+        // The dispatch before has left the rest of what it would move.
+        return PassTraffic { name: pass.name, ..PassTraffic::default() };
+    }
     let over_clusters = over(&[Domain::Clusters]);
     let over_surfels = over(&[Domain::Surfels, Domain::SurfelSlots, Domain::VisibleClusters, Domain::Points]);
     let of_splats = match over_clusters {
@@ -128,7 +134,7 @@ fn per_surfel(resource: Resource, variant: &Variant) -> u64 {
 fn per_pixel(resource: Resource, variant: &Variant) -> f64 {
     let target = describe(variant).into_iter().find(|target| target.resource == resource);
     match (resource, target) {
-        (_, Some(target)) => pixel_size(&target) as f64,
+        (_, Some(target)) => pixel_size(&target),
         (Resource::Pulled, None) if variant.pull_push.is_some() => Pyramids::finest_level(variant)[0],
         (Resource::Pushed, None) if variant.pull_push.is_some() => Pyramids::finest_level(variant)[1],
         _ => 0.0,

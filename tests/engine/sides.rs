@@ -1,7 +1,7 @@
 //! Automatic culling: as of back faces on closed surfaces, as none on open ones.
 
 use crate::support::gpu::{assert_silent, device, render};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use std::sync::Arc;
 use surfel::geometry::{Camera, Surfels};
 use surfel::settings::methods::{Method, perspective_ewa, sprites};
@@ -58,5 +58,25 @@ fn closed_surfaces_are_culled_and_open_ones_are_not() {
             assert!(covered(&whole) > 5_000);
         }
     }
+    assert_silent(&device);
+}
+
+/// Of more tiles than a splat opens one by one.
+#[test]
+fn a_disc_over_all_of_a_large_picture_is_drawn_from_behind() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let surfels = Surfels {
+        positions: vec![Vec3::ZERO],
+        normals: vec![Vec3::NEG_Z],
+        radii: vec![5.0],
+        ..Surfels::default()
+    };
+    let camera = Camera::look_at(3.0 * DVec3::Z, DVec3::ZERO, DVec3::Y, 0.8, 1.0, 0.1).unwrap();
+    let options =
+        RenderOptions { size: [640; 2], rasterizer: Rasterizer::Compute.into(), ..Default::default() };
+    let [auto, none] = [Cull::Auto, Cull::None].map(|cull| {
+        render(&device, &surfels, &camera, &Settings { cull, ..perspective_ewa::METHOD.settings() }, options)
+    });
+    assert_eq!((different(&auto, &none), covered(&auto)), (0, 640 * 640));
     assert_silent(&device);
 }

@@ -12,36 +12,38 @@
 //! surfels ─ cull → clusters ─ footprint → splats ─ boxes → hierarchy ─ surface → picture, normal, depth
 //! ```
 //!
-//! With `--cull auto`, visibility first runs over the splats that face the eye, and `sides` drops some of the others. `filter` filters the
-//! picture, if the settings say so.
+//! With `--cull auto`, visibility first runs over the splats that face the eye, and `sides` drops some of the others. On the compute path
+//! `surface` draws all of the picture then, and again the tiles that the rest of the others may change. `filter` filters the picture, if the
+//! settings say so.
 //!
 //! If ε is measured along the camera's axis, visibility has its own footprints, of discs moved by ε.
 
 use super::Path;
 use crate::frame::pass::Pass;
 use crate::frame::passes::footprint::{FOOTPRINT, MOVED};
-use crate::frame::passes::{attribute, boxes::BOXES, normalize, seed::SEED, surface::SURFACE, visibility};
+use crate::frame::passes::open::OPEN;
+use crate::frame::passes::sides::SIDES;
+use crate::frame::passes::{attribute, boxes, boxes::BOXES, normalize, seed::SEED, surface, visibility};
 
 /// The passes; `moved` if ε is measured along the camera's axis, `split` if the passes of `surface` run separately, `sides` if some splats that
 /// face away are culled.
 pub fn passes(path: Path, moved: bool, split: bool, sides: bool) -> Vec<&'static Pass> {
+    if path == Path::Compute && !split {
+        return whole(sides);
+    }
     let (first, second): (&[&Pass], &[&Pass]) =
         if moved { (&[&MOVED], &[&FOOTPRINT]) } else { (&[&FOOTPRINT], &[]) };
     let first = &*[first, &super::sides(path, sides)].concat();
     match path {
         Path::Compute => {
-            let boxes: &[&Pass] = if moved { &[&BOXES] } else { &[] };
-            let stages: &[&Pass] = match split {
-                true => &[
-                    &[&BOXES, &visibility::COMPUTE][..],
-                    second,
-                    boxes,
-                    &[&attribute::COMPUTE, &normalize::COMPUTE],
-                ]
-                .concat(),
-                false => &[&BOXES, &SURFACE],
-            };
-            [first, stages].concat()
+            let moved_boxes: &[&Pass] = if moved { &[&BOXES] } else { &[] };
+            let stages = [
+                &[&BOXES, &visibility::COMPUTE],
+                second,
+                moved_boxes,
+                &[&attribute::COMPUTE, &normalize::COMPUTE],
+            ];
+            [first, &stages.concat()].concat()
         }
         Path::Raster => {
             [first, &[&visibility::RASTER], second, &[&attribute::RASTER, &normalize::RASTER]].concat()
@@ -51,5 +53,13 @@ pub fn passes(path: Path, moved: bool, split: bool, sides: bool) -> Vec<&'static
             let seed: &[&Pass] = if seed { &[&SEED] } else { &[] };
             [first, second, seed, &[&visibility::RASTER, &attribute::RASTER, &normalize::IN_SUBPASS]].concat()
         }
+    }
+}
+
+/// The passes whose stages run tile by tile.
+fn whole(sides: bool) -> Vec<&'static Pass> {
+    match sides {
+        false => vec![&FOOTPRINT, &BOXES, &surface::SURFACE],
+        true => vec![&FOOTPRINT, &boxes::FRONTS, &surface::FRONTS, &SIDES, &OPEN, &BOXES, &surface::OPEN],
     }
 }

@@ -4,12 +4,12 @@ use crate::frame::pass::{Commands, Domain, Pass, Program, Programs};
 use crate::frame::resource::Resource::{Filtered, Image};
 use crate::vk::shaders::FILTER_COMPUTE;
 
-/// One invocation per strip of a column.
+/// One invocation per block of pixels.
 pub static FILTER: Pass = Pass {
     name: "filter",
     reads: &[Image],
     writes: &[Filtered],
     clears: &[],
-    programs: Programs::OfFrame(|_| vec![Program::compute(&FILTER_COMPUTE, Domain::Strips)]),
+    programs: Programs::OfFrame(|_| vec![Program::compute(&FILTER_COMPUTE, Domain::Blocks)]),
     commands: Commands::Dispatches,
 };

@@ -12,6 +12,7 @@ pub mod filter;
 pub mod footprint;
 pub mod nearest;
 pub mod normalize;
+pub mod open;
 pub mod order;
 pub mod project;
 pub mod pull;
@@ -75,7 +76,7 @@ mod tests {
         all
     }
 
-    const RESOURCES: [Resource; 24] = [
+    const RESOURCES: [Resource; 25] = [
         Resource::VisibleClusters,
         Resource::Order,
         Resource::Splats,
@@ -87,6 +88,7 @@ mod tests {
         Resource::Sums0,
         Resource::Sums1,
         Resource::Attributes,
+        Resource::OpenTiles,
         Resource::Coverage,
         Resource::Nearest,
         Resource::NearestDepth,

@@ -1,19 +1,21 @@
-//! Sides: splats → those that face the eye, and the backs of open surfaces (`sides.glsl`).
+//! Sides: splats → those that face the eye, and the backs of open surfaces; on the tile path also the tiles that these may change
+//! (`sides.glsl`).
 
 use crate::frame::pass::{Commands, Domain, Pass, Program, Programs};
-use crate::frame::resource::Resource::{Boxes, Counts, Splats, Visibility, VisibleClusters};
-use crate::vk::shaders::{SIDES_COMPUTE, SIDES_TILES_COMPUTE};
+use crate::frame::resource::Resource::{Boxes, Counts, OpenTiles, Splats, Visibility, VisibleClusters};
+use crate::vk::shaders::{SIDES_COMPUTE, SIDES_TILES_COMPUTE, constant};
 
 /// One invocation per surfel; on the tile path of the visible clusters, or of the capacity.
 pub static SIDES: Pass = Pass {
     name: "sides",
     reads: &[Visibility, VisibleClusters],
-    writes: &[Splats, Boxes, Counts],
+    writes: &[Splats, Boxes, OpenTiles, Counts],
     clears: &[],
     programs: Programs::OfScene(|variant| {
         let domain = if variant.frame.clusters { Domain::VisibleClusters } else { Domain::SurfelSlots };
         vec![match variant.frame.is_tiled() {
-            true => Program::compute(&SIDES_TILES_COMPUTE, domain),
+            true => Program::compute(&SIDES_TILES_COMPUTE, domain)
+                .with(constant::OPENS_TILES, variant.frame.opens_tiles()),
             false => Program::compute(&SIDES_COMPUTE, Domain::Surfels),
         }]
     }),

@@ -1,18 +1,52 @@
 //! Surface: splats → picture, normal, depth: visibility, attribute and normalize tile by tile, in one dispatch (zwicker2004 §6; `surface.glsl`).
 
 use super::tiles;
-use crate::frame::pass::{Commands, Pass, Programs};
+use crate::frame::pass::{Commands, Domain, Pass, Program, Programs};
 use crate::frame::resource::Resource::{
-    Attributes, Boxes, Depth, Image, IncompleteFrame, Normal, ScreenClips, Splats, Visibility,
+    self, Attributes, Boxes, Depth, Image, IncompleteFrame, Normal, OpenTiles, ScreenClips, Splats,
+    Visibility,
 };
-use crate::vk::shaders::{SURFACE_COMPUTE, SURFACE_SUBGROUPS_COMPUTE};
+use crate::frame::variant::Variant;
+use crate::vk::shaders::{SURFACE_COMPUTE, SURFACE_SUBGROUPS_COMPUTE, constant};
+
+const READS: &[Resource] = &[Splats, Boxes, Attributes, ScreenClips];
+const WRITES: &[Resource] = &[Visibility, OpenTiles, Image, Normal, Depth, IncompleteFrame];
 
 /// One workgroup per tile.
 pub static SURFACE: Pass = Pass {
     name: "surface",
-    reads: &[Splats, Boxes, Attributes, ScreenClips, Visibility],
-    writes: &[Image, Normal, Depth, IncompleteFrame],
+    reads: READS,
+    writes: WRITES,
     clears: &[],
-    programs: Programs::OfFrame(|variant| tiles(variant, [&SURFACE_COMPUTE, &SURFACE_SUBGROUPS_COMPUTE])),
+    programs: Programs::OfFrame(programs),
     commands: Commands::Dispatches,
 };
+
+/// The same for the splats that face the eye, before sides.
+pub static FRONTS: Pass = Pass {
+    name: "surface",
+    reads: READS,
+    writes: WRITES,
+    clears: &[OpenTiles],
+    programs: Programs::OfFrame(|variant| {
+        programs(variant).into_iter().map(|program| program.with(constant::FRONTS, true)).collect()
+    }),
+    commands: Commands::Dispatches,
+};
+
+/// The same for the tiles that sides has opened.
+pub static OPEN: Pass = Pass {
+    name: "surface",
+    reads: READS,
+    writes: WRITES,
+    clears: &[],
+    programs: Programs::OfFrame(|variant| {
+        let programs = programs(variant).into_iter();
+        programs.map(|program| Program { domain: Domain::OpenTiles, ..program }).collect()
+    }),
+    commands: Commands::Dispatches,
+};
+
+fn programs(variant: &Variant) -> Vec<Program> {
+    tiles(variant, [&SURFACE_COMPUTE, &SURFACE_SUBGROUPS_COMPUTE])
+}
