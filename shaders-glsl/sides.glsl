@@ -36,7 +36,7 @@ layout(constant_id = 71) const bool OPENS_TILES = false;
 // Most tiles of a splat that opens those alone; larger ones open all.
 const uint MOST_OPENED = 4096;
 
-// Opens the tiles that a splat may change.
+// Opens the tiles that a splat may change. Invocations that open the same tile store the same.
 void open_tiles_of(Box box) {
     uvec2 last_tile = tile_counts() - 1;
     uvec4 bounds = corners(box) / TILE_SIDE;
