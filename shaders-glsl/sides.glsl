@@ -39,7 +39,7 @@ const uint MOST_OPENED = 4096;
 // Opens the tiles that a splat may change. Invocations that open the same tile store the same.
 void open_tiles_of(Box box) {
     uvec2 last_tile = tile_counts() - 1;
-    uvec4 bounds = corners(box) / TILE_SIDE;
+    uvec4 bounds = corners(box) / TILE;
     uvec2 low = min(bounds.xy, last_tile), high = min(bounds.zw, last_tile), size = high - low + 1;
     if (size.x * size.y > MOST_OPENED) {
         open.all = 1;

@@ -1,5 +1,7 @@
 // Open tiles: those that splats that face away may change, once pass sides has culled some of these. They are drawn again, with all splats.
 
+#include "lib/tile_size.glsl"
+
 struct OpenTile {
     uint key;    // of each tile, row by row: bits of the κ behind which splats do not change it, or OPEN
     uint listed; // the open tiles, in any order: x in the lower 16 bits, y in the upper ones
@@ -19,10 +21,9 @@ layout(set = 1, binding = 24, std430) buffer OpenTiles {
 const uint OPEN = ~0u;
 // Most columns of the dispatch, which every device allows.
 const uint MOST_COLUMNS = 32768;
-const uint TILE_SIDE = 8; // px
 
 uvec2 tile_counts() {
-    return (uvec2(frame.viewport) + TILE_SIDE - 1) / TILE_SIDE;
+    return (uvec2(frame.viewport) + TILE - 1) / TILE;
 }
 
 uint tile_index(uvec2 tile) {
@@ -34,5 +35,5 @@ uvec2 listed_origin() {
     uint place = gl_WorkGroupID.x * gl_NumWorkGroups.y + gl_WorkGroupID.y;
     bool exists = place < open.listed_count;
     uint tile = open.tiles[exists ? place : 0].listed;
-    return exists ? TILE_SIDE * uvec2(tile & 0xffffu, tile >> 16) : uvec2(1u << 30);
+    return exists ? TILE * uvec2(tile & 0xffffu, tile >> 16) : uvec2(1u << 30);
 }

@@ -2,6 +2,7 @@
 
 #define BOX_ACCESS readonly
 #include "lib/box.glsl"
+#include "lib/tile_size.glsl"
 #include "lib/workgroup.glsl"
 
 // Start of each level of the box hierarchy: level 0 has the boxes of splats, a node of level 3 is a block of 512.
@@ -32,7 +33,6 @@ bool is_last_slice() {
     return !SLICED || hierarchy.slice + 1 == hierarchy.slices;
 }
 
-const uint TILE = 8;
 const uint ROWS = TILE * TILE / LANES;
 const uint ROW_STEP = LANES / TILE;
 

@@ -32,6 +32,7 @@ mod compact;
 pub(crate) mod description;
 pub mod faster;
 mod methods;
+mod open_tiles;
 pub(crate) mod pass;
 pub(crate) mod passes;
 pub(crate) mod pipelines;

@@ -1,5 +1,6 @@
 //! Render targets: name, format, binding, and the frames that have them.
 
+use super::open_tiles;
 use super::pass::{DrawTargets, InitialContents, Pass};
 use super::pyramids::{NEAREST_POINT, Pyramids};
 use super::resource::Resource;
@@ -7,7 +8,6 @@ use super::variant::Variant;
 use crate::error::{Error, Result};
 use crate::settings::splatting::Visibility;
 use crate::settings::{Outputs, Precision, Rasterizer};
-use crate::vk::shaders::layout::OpenTile;
 use crate::vk::shaders::{self, resource};
 use crate::vk::{
     Access, Attachment, Binding, Buffer, Capabilities, DescriptorSet, Device, Encoder, Image, ImageUse, Use,
@@ -16,7 +16,7 @@ use crate::vk::{
 use ash::vk::Format;
 use std::sync::Arc;
 
-/// Side of a tile, px: TILE of `lib/tile.glsl`.
+/// Side of a tile, px: TILE of `lib/tile_size.glsl`.
 pub const TILE: u32 = 8;
 
 /// Description of a target.
@@ -37,14 +37,9 @@ pub enum Kind {
     Image(ImageUse),
     /// A buffer of so many bytes per pixel, row by row from the top left.
     Pixels(u64),
-    /// A list of tiles, [`OPEN_TILE`] bytes for each tile of the picture, after [`OPEN_HEADER`] bytes.
+    /// The list of open tiles.
     Tiles,
 }
-
-/// Bytes of a list of open tiles before its tiles: workgroups of the dispatch over them, their number, whether all are (`lib/open_tiles.glsl`).
-const OPEN_HEADER: u64 = 24;
-/// Bytes of a tile in it.
-const OPEN_TILE: u64 = size_of::<OpenTile>() as u64;
 
 /// The targets of a frame.
 pub struct RenderTargets {
@@ -170,14 +165,6 @@ pub fn sums_format(precision: Precision, wide: bool) -> Format {
 /// Bytes of coverage per pixel: one bit per sample.
 const COVERAGE: u64 = 4;
 
-/// The list of open tiles.
-const OPEN_TILES: TargetDescription = TargetDescription {
-    resource: Resource::OpenTiles,
-    format: Format::R32_UINT,
-    kind: Kind::Tiles,
-    shader: Some(&resource::OPEN_TILES),
-};
-
 /// The coverage mask.
 fn coverage(variant: &Variant) -> Option<TargetDescription> {
     let coverage = pixels(Resource::Coverage, Format::R32_UINT, COVERAGE, &resource::COVERAGE);
@@ -227,7 +214,7 @@ fn compute_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
     let visibility = pixels(Resource::Visibility, Format::R32_UINT, 4, &resource::VISIBILITY);
     if !variant.split && !variant.sliced {
         let visibility = variant.cull_auto.then_some(visibility);
-        let open = variant.opens_tiles().then_some(OPEN_TILES);
+        let open = variant.opens_tiles().then_some(open_tiles::TARGET);
         return [visibility, open].into_iter().chain(outputs).collect();
     }
     if variant.visibility == Visibility::Nearest {
@@ -291,7 +278,7 @@ pub fn pixel_size(target: &TargetDescription) -> f64 {
     match target.kind {
         Kind::Image(_) => pixel_bytes(target.format) as f64,
         Kind::Pixels(bytes) => bytes as f64,
-        Kind::Tiles => OPEN_TILE as f64 / f64::from(TILE * TILE),
+        Kind::Tiles => open_tiles::ENTRY as f64 / f64::from(TILE * TILE),
     }
 }
 
@@ -352,7 +339,7 @@ impl RenderTargets {
                     Memory::Buffer(Buffer::storage(device, name, bytes * pixels_of(size))?)
                 }
                 Kind::Tiles => {
-                    let bytes = OPEN_HEADER + OPEN_TILE * pixels_of(tiles_of(size));
+                    let bytes = open_tiles::bytes(pixels_of(tiles_of(size)));
                     Memory::Buffer(Buffer::indirect(device, name, bytes)?)
                 }
             };
@@ -433,7 +420,7 @@ impl RenderTargets {
     pub fn clear(&self, enc: &mut Encoder<'_, '_>, resource: Resource) {
         match (self.buffer(resource), resource) {
             (Some(buffer), Resource::Nearest) => enc.ones(buffer),
-            (Some(buffer), Resource::OpenTiles) => enc.zero_range(buffer, 0, OPEN_HEADER),
+            (Some(buffer), Resource::OpenTiles) => enc.zero_range(buffer, 0, open_tiles::HEADER),
             (Some(buffer), _) => enc.zero(buffer),
             (None, _) => {}
         }

@@ -145,8 +145,7 @@ fn surfels_in_arbitrary_order_render_the_same_picture() {
         ];
         // Of the default device all; coverage takes long to compile.
         let is_default = limits == DeviceLimits::default();
-        for (name, alpha) in &all[..if is_default { 3 } else { if_whole(3, 1) }] {
-            let (name, alpha) = (*name, *alpha);
+        for &(name, alpha) in &all[..if is_default { 3 } else { if_whole(3, 1) }] {
             let settings = Settings { alpha, ..Method::named(name).unwrap().settings() };
             let options = RenderOptions { profile: true, count: true, ..all_outputs(Rasterizer::Compute) };
             let [mut by_order, mut expected] =
