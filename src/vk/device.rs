@@ -320,6 +320,7 @@ impl Drop for Device {
                 // A lost device has nothing left to wait for.
                 let _ = self.raw.device_wait_idle();
             }
+            self.pipelines.destroy(&self.raw);
             self.descriptor_pools.destroy(&self.raw);
             self.pipeline_cache.store_and_destroy(&self.raw);
             ManuallyDrop::drop(&mut self.pipeline_cache);

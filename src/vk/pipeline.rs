@@ -11,7 +11,7 @@ use ash::vk;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-/// A pipeline and its layout.
+/// A pipeline and its layout, destroyed by its owner.
 pub(super) struct Raw {
     pub(super) pipeline: vk::Pipeline,
     pub(super) layout: vk::PipelineLayout,
@@ -19,14 +19,21 @@ pub(super) struct Raw {
     pub(super) sets: usize,
     /// Size of the push constants, bytes.
     pub(super) push: u32,
-    device: Arc<Device>,
+    /// The device, if the pipeline destroys itself; `None` if the device's pool does.
+    pub(super) device: Option<Arc<Device>>,
 }
 
 /// A compute pipeline. Equal pipelines are shared.
-pub struct ComputePipeline(Arc<Raw>);
+pub struct ComputePipeline {
+    raw: Arc<Raw>,
+    _device: Arc<Device>,
+}
 
 /// A draw pipeline without vertex buffers; viewport and scissor are dynamic state. Equal pipelines are shared.
-pub struct DrawPipeline(Arc<Raw>);
+pub struct DrawPipeline {
+    raw: Arc<Raw>,
+    _device: Arc<Device>,
+}
 
 /// Layouts of descriptor sets 0, 1, …
 pub type Sets<'a> = [&'a SetLayout];
@@ -48,11 +55,12 @@ impl ComputePipeline {
             (is_subgroup && capabilities.subgroup_size_control).then_some(capabilities.subgroup_size);
         let stage = code.specialized(constants).with_subgroup_size(required);
         let key = PipelineKey { stages: vec![stage], sets: bindings(sets), push, draw: None };
-        device.pipelines.get(key, |key| Raw::compute(device, sets, key)).map(Self)
+        let raw = device.pipelines.get(&device.raw, key, |key| Raw::compute(device, sets, key))?;
+        Ok(Self { raw, _device: device.clone() })
     }
 
     pub(super) fn raw(&self) -> &Raw {
-        &self.0
+        &self.raw
     }
 }
 
@@ -112,11 +120,12 @@ impl DrawPipeline {
         let push = code.each_ref().map(Code::push).into_iter().max().unwrap_or_default();
         let stages = code.map(|code| code.specialized(constants)).to_vec();
         let key = PipelineKey { stages, sets: bindings(sets), push, draw: Some(draw.clone()) };
-        device.pipelines.get(key, |key| Raw::draw(device, sets, key, &draw, pass)).map(Self)
+        let raw = device.pipelines.get(&device.raw, key, |key| Raw::draw(device, sets, key, &draw, pass))?;
+        Ok(Self { raw, _device: device.clone() })
     }
 
     pub(super) fn raw(&self) -> &Raw {
-        &self.0
+        &self.raw
     }
 }
 
@@ -153,14 +162,26 @@ impl Raw {
         let layout = unsafe { device.raw.create_pipeline_layout(&info, None) }
             .map_err(Error::vulkan("vkCreatePipelineLayout"))?;
         device.counters.pipelines.fetch_add(1, Ordering::Relaxed);
-        let (sets, device) = (sets.len(), device.clone());
+        let (sets, device) = (sets.len(), Some(device.clone()));
         Ok(Self { pipeline: vk::Pipeline::null(), layout, sets, push, device })
     }
 
+    /// Destroys the pipeline, which may be null, and the layout.
+    ///
+    /// # Safety
+    /// They were created on `device`, neither the CPU nor the GPU uses them any more, and this is the only call.
+    pub(super) unsafe fn destroy(&self, device: &ash::Device) {
+        // SAFETY: as the caller vouches.
+        unsafe {
+            device.destroy_pipeline(self.pipeline, None);
+            device.destroy_pipeline_layout(self.layout, None);
+        }
+    }
+
     /// Names the pipeline after its stages, for debuggers.
-    fn name(&self, key: &PipelineKey) {
+    fn name(&self, device: &Device, key: &PipelineKey) {
         let names: Vec<_> = key.stages.iter().map(ShaderStage::name).collect();
-        self.device.name(self.pipeline, &names.join(" "));
+        device.name(self.pipeline, &names.join(" "));
     }
 
     fn compute(device: &Arc<Device>, sets: &Sets<'_>, key: &PipelineKey) -> Result<Self> {
@@ -171,7 +192,7 @@ impl Raw {
             unsafe { device.raw.create_compute_pipelines(device.pipeline_cache.raw, &[info], None) }
         })?;
         raw.pipeline = first(made, "vkCreateComputePipelines")?;
-        raw.name(key);
+        raw.name(device, key);
         Ok(raw)
     }
 
@@ -227,17 +248,16 @@ impl Raw {
             }
         })?;
         raw.pipeline = first(made, "vkCreateGraphicsPipelines")?;
-        raw.name(key);
+        raw.name(device, key);
         Ok(raw)
     }
 }
 
 impl Drop for Raw {
     fn drop(&mut self) {
-        // SAFETY: the GPU is done with it (see the module's docs); a null pipeline is ignored.
-        unsafe {
-            self.device.raw.destroy_pipeline(self.pipeline, None);
-            self.device.raw.destroy_pipeline_layout(self.layout, None);
+        if let Some(device) = &self.device {
+            // SAFETY: the GPU is done with it (see the module's docs).
+            unsafe { self.destroy(&device.raw) }
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Live pipelines of a device by everything that they are created from: equal requests share one pipeline.
+//! Pipelines of a device by everything that they are created from: equal requests share one pipeline.
 
 use super::draw_state::{Blend, DepthTest, Topology};
 use super::lock;
@@ -44,34 +44,126 @@ pub(super) enum PassKey {
     Rendering(Vec<vk::Format>, vk::Format, vk::Format),
 }
 
-/// Pipelines of a device, by weak references.
+/// Greatest number of pipelines that are kept although nothing uses them.
+const MOST_UNUSED: usize = 256;
+
+/// Pipelines of a device. They are kept when their users are gone, since later ones would compile them again; those in passes of a host are
+/// not, since a handle of a pass may come back as another one.
 #[derive(Default)]
-pub(super) struct PipelinePool(Mutex<HashMap<PipelineKey, Weak<Raw>>>);
+pub(super) struct PipelinePool(Mutex<Pipelines>);
+
+#[derive(Default)]
+struct Pipelines {
+    kept: HashMap<PipelineKey, Kept>,
+    of_hosts: HashMap<PipelineKey, Weak<Raw>>,
+    /// Number of requests so far.
+    requests: u64,
+}
+
+struct Kept {
+    pipeline: Arc<Raw>,
+    /// Number of the last request.
+    last: u64,
+}
+
+impl PipelineKey {
+    fn is_of_host(&self) -> bool {
+        self.draw.as_ref().is_some_and(|draw| matches!(draw.pass, PassKey::Subpass(..)))
+    }
+}
 
 impl PipelinePool {
-    /// Returns the pipeline of `key`, created by `make` if it does not exist.
+    /// Returns the pipeline of `key`, created by `make` on `device` if it does not exist.
     pub(super) fn get<E>(
         &self,
+        device: &ash::Device,
         key: PipelineKey,
         make: impl FnOnce(&PipelineKey) -> Result<Raw, E>,
     ) -> Result<Arc<Raw>, E> {
-        if let Some(alive) = self.lock().get(&key).and_then(Weak::upgrade) {
-            return Ok(alive);
+        if let Some(known) = self.lock().find(&key) {
+            return Ok(known);
         }
         // Without the lock: compilation is slow, and other threads may create other pipelines meanwhile.
-        let made = Arc::new(make(&key)?);
+        let mut made = make(&key)?;
         let mut pool = self.lock();
-        if let Some(alive) = pool.get(&key).and_then(Weak::upgrade) {
+        if let Some(known) = pool.find(&key) {
             // Another thread created the same pipeline: this one is destroyed without the lock.
             drop(pool);
-            return Ok(alive);
+            return Ok(known);
         }
-        pool.retain(|_, pipeline| pipeline.strong_count() > 0);
-        pool.insert(key, Arc::downgrade(&made));
+        if key.is_of_host() {
+            let made = Arc::new(made);
+            pool.of_hosts.retain(|_, pipeline| pipeline.strong_count() > 0);
+            pool.of_hosts.insert(key, Arc::downgrade(&made));
+            return Ok(made);
+        }
+        // From now on the pool destroys it.
+        made.device = None;
+        let made = Arc::new(made);
+        pool.destroy_unused(device, MOST_UNUSED);
+        let last = pool.requests;
+        pool.kept.insert(key, Kept { pipeline: made.clone(), last });
         Ok(made)
     }
 
-    fn lock(&self) -> MutexGuard<'_, HashMap<PipelineKey, Weak<Raw>>> {
+    /// Destroys all pipelines that are kept.
+    ///
+    /// # Safety
+    /// They were created on `device`, and nothing uses one of them any more.
+    pub(super) unsafe fn destroy(&self, device: &ash::Device) {
+        for (_, Kept { pipeline, .. }) in self.lock().kept.drain() {
+            // SAFETY: as the caller vouches.
+            unsafe { pipeline.destroy(device) }
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Pipelines> {
         lock(&self.0)
+    }
+}
+
+impl Pipelines {
+    fn find(&mut self, key: &PipelineKey) -> Option<Arc<Raw>> {
+        self.requests += 1;
+        if let Some(kept) = self.kept.get_mut(key) {
+            kept.last = self.requests;
+            return Some(kept.pipeline.clone());
+        }
+        self.of_hosts.get(key).and_then(Weak::upgrade)
+    }
+
+    /// Destroys the pipelines that nothing uses but for `most`, those of the longest ago first.
+    fn destroy_unused(&mut self, device: &ash::Device, most: usize) {
+        // Under the lock nobody else can get one that only the pool has.
+        let is_unused = |kept: &Kept| Arc::strong_count(&kept.pipeline) == 1;
+        let unused = self.kept.values().filter(|kept| is_unused(kept)).map(|kept| kept.last).collect();
+        let Some(last) = last_but(most, unused) else { return };
+        self.kept.retain(|_, kept| {
+            let is_kept = kept.last > last || !is_unused(kept);
+            if !is_kept {
+                // SAFETY: it was created on the pool's device; nothing else has it, so the GPU is done with it (see the module's docs).
+                unsafe { kept.pipeline.destroy(device) }
+            }
+            is_kept
+        });
+    }
+}
+
+/// The greatest of the numbers but for the `most` greatest; `None` if there are no others.
+fn last_but(most: usize, mut numbers: Vec<u64>) -> Option<u64> {
+    numbers.sort_unstable();
+    numbers.len().checked_sub(most + 1).map(|rank| numbers[rank])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_most_recent_ones_are_kept() {
+        assert_eq!(last_but(2, vec![5, 3, 9, 7]), Some(5));
+        assert_eq!(last_but(0, vec![5, 3]), Some(5));
+        assert_eq!(last_but(3, vec![5, 3, 9]), None);
+        assert_eq!(last_but(256, vec![]), None);
     }
 }

@@ -1,6 +1,6 @@
 //! Frames: resources they create, fallbacks of limited devices, sizes, and both rasterizers compared.
 
-use crate::support::gpu::{assert_silent, device, render};
+use crate::support::gpu::{assert_silent, device, new_device, render};
 use crate::support::placing::{rich, weighted};
 use crate::support::settings::splats_alone;
 use glam::{DVec3, Vec3};
@@ -48,7 +48,7 @@ pub fn picture_on(device: &Arc<Device>, surfels: &Surfels, options: RenderOption
 
 #[test]
 fn a_second_frame_creates_nothing() {
-    let Some(device) = device(DeviceLimits::default()) else { return };
+    let Some(device) = new_device(DeviceLimits::default()) else { return };
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
         let scene = Scene::upload(&device, &sphere(5_000)).unwrap();
         let options = RenderOptions { profile: true, count: true, ..all_outputs(rasterizer) };
@@ -66,7 +66,7 @@ fn a_second_frame_creates_nothing() {
 
 #[test]
 fn pipelines_are_created_once_per_variant() {
-    let Some(device) = device(DeviceLimits::default()) else { return };
+    let Some(device) = new_device(DeviceLimits::default()) else { return };
     let scene = Scene::upload(&device, &sphere(2_000)).unwrap();
     let lights = DirectionalLight { to_light: [0.0, 1.0, 0.0], radiance: [0.2; 3] };
     let mut lit = splats_alone();
@@ -93,6 +93,23 @@ fn pipelines_are_created_once_per_variant() {
         let made = device.usage().pipelines - before;
         println!("{rasterizer:?}: {made} pipelines for {} settings", frames.len());
         assert_eq!(made, most, "{rasterizer:?}");
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn pipelines_outlive_their_renderers() {
+    let Some(device) = new_device(DeviceLimits::default()) else { return };
+    let scene = Scene::upload(&device, &sphere(2_000)).unwrap();
+    for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
+        let render = || {
+            let mut renderer = Renderer::new(&device, all_outputs(rasterizer)).unwrap();
+            renderer.render_picture(&scene, &camera(SIZE), &splats_alone()).unwrap().0
+        };
+        let first = render();
+        let made = device.usage().pipelines;
+        assert!(made > 0 && render() == first);
+        assert_eq!(device.usage().pipelines, made, "{rasterizer:?}");
     }
     assert_silent(&device);
 }
@@ -183,7 +200,7 @@ fn streams_and_splats_match_the_plan() {
 
 #[test]
 fn progressive_frames_create_nothing_after_both_variants() {
-    let Some(device) = device(DeviceLimits::default()) else { return };
+    let Some(device) = new_device(DeviceLimits::default()) else { return };
     let mut surfels = sphere(5_000);
     surfels.weights = Some(Weights::collect((0..5_000).map(|i| (0.2, (i % 9 == 0).then_some([0.2; 4])))));
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
@@ -224,7 +241,7 @@ fn normalization_by_surfel_needs_weights() {
 
 #[test]
 fn dropping_frees_all_memory() {
-    let Some(device) = device(DeviceLimits::default()) else { return };
+    let Some(device) = new_device(DeviceLimits::default()) else { return };
     let before = device.usage().bytes;
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
         picture_on(&device, &sphere(2_000), all_outputs(rasterizer));

@@ -1,7 +1,7 @@
 //! Instances: an identity placement renders the frame of the scene itself; placed scenes, alone or several, match the float64 reference of
 //! one merged cloud.
 
-use crate::support::gpu::{Renderers, assert_silent, device};
+use crate::support::gpu::{Renderers, assert_silent, device, new_device};
 use crate::support::placing::{exact, lines, merged, moved_lines, painted, plain, rich, turned, weighted};
 use crate::support::{if_whole, methods};
 use glam::{DMat4, DVec3};
@@ -95,7 +95,7 @@ fn assert_agree(
 
 #[test]
 fn an_identity_placement_renders_the_frame_of_the_scene() {
-    let Some(device) = device(DeviceLimits::default()) else { return };
+    let Some(device) = new_device(DeviceLimits::default()) else { return };
     let surfels = rich(3_000);
     let scene = Arc::new(Scene::upload(&device, &surfels).unwrap());
     for method in methods() {
@@ -116,7 +116,7 @@ fn an_identity_placement_renders_the_frame_of_the_scene() {
 
 #[test]
 fn instances_of_a_scene_share_allocations() {
-    let Some(device) = device(DeviceLimits::default()) else { return };
+    let Some(device) = new_device(DeviceLimits::default()) else { return };
     let scene = Arc::new(Scene::upload(&device, &plain(50)).unwrap());
     let instances = |count: usize| -> Vec<_> {
         let place =
@@ -143,7 +143,7 @@ fn instances_of_a_scene_share_allocations() {
 
 #[test]
 fn many_instances_share_descriptor_pools() {
-    let Some(device) = device(DeviceLimits::default()) else { return };
+    let Some(device) = new_device(DeviceLimits::default()) else { return };
     let scene = Arc::new(Scene::upload(&device, &plain(50)).unwrap());
     let mut renderer = Renderer::new(&device, options(Rasterizer::Compute)).unwrap();
     let mut pools = |count: usize| {

@@ -1,7 +1,7 @@
 //! Pull–push of points that are drawn and of points that are computed: one picture, bit for bit; the cull reasons of points; what a device without
 //! 64-bit atomics does.
 
-use crate::support::gpu::{assert_silent, device};
+use crate::support::gpu::{assert_silent, device, new_device};
 use crate::support::if_whole;
 use crate::support::sampling::paint_srgb;
 use crate::support::scenes::{Case, cases};
@@ -332,7 +332,7 @@ fn many_windows_of_surfels_make_one_picture() {
 
 #[test]
 fn a_second_frame_makes_nothing() {
-    let Some(device) = device(DeviceLimits::default()) else { return };
+    let Some(device) = new_device(DeviceLimits::default()) else { return };
     let surfels = scenes::open("scene:bumpy-sphere?points=2000&seed=1").unwrap();
     let scene = Scene::upload(&device, &surfels).unwrap();
     for rasterizer in BOTH {
