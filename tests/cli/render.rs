@@ -93,7 +93,8 @@ fn pictures_do_not_depend_on_the_width_of_vectors() {
         return;
     };
     let all = ["--alpha coverage", "--method confetti", "--visibility axis", "--method sprites-unfiltered"];
-    for options in &all[..if_whole(4, 2)] {
+    // lavapipe takes 10 to 20 s to compile the default frame for another width.
+    for options in &all[..if_whole(4, 1)] {
         let pictures = ["128", "256", "512"][..if_whole(3, 2)].iter().map(|width| {
             let name = format!("{width}.exr");
             let arguments = format!(

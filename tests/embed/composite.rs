@@ -266,8 +266,8 @@ fn a_thousand_frames_of_all_sizes_and_scenes_leave_nothing() {
         let options = Options::new(target);
         // SAFETY: the target is the frame's.
         let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
-        let settings =
-            ["perspective-ewa", "pull-push", "sprites"].map(|name| Method::named(name).unwrap().settings());
+        let settings = ["perspective-ewa", "pull-push", "sprites-unfiltered"]
+            .map(|name| Method::named(name).unwrap().settings());
         let mut under_way = UnderWay::new(2);
         let mut most = 0;
         for number in 0..1000usize {

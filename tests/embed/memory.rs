@@ -90,7 +90,7 @@ fn frames(host: &Host, device: &Arc<Device>) -> Vec<(String, Rendered)> {
 fn frames_do_not_depend_on_what_memory_contained() {
     let Some(host) = open(|all| all) else { return };
     let expected = frames(&host, &host.external_device(None).unwrap());
-    for pattern in &PATTERNS[if_whole(0, 1)..] {
+    for pattern in PATTERNS.iter().skip(if_whole(0, 1)).step_by(if_whole(1, 2)) {
         for ((name, found), (_, expected)) in frames(&host, &device(&host, *pattern)).iter().zip(&expected) {
             let differ = found.0.iter().zip(&expected.0).filter(|(a, b)| a != b).count();
             assert!(found == expected, "{name}, memory of {pattern:x?}: {differ} px differ");

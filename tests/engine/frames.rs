@@ -1,6 +1,7 @@
 //! Frames: resources they create, fallbacks of limited devices, sizes, and both rasterizers compared.
 
 use crate::support::gpu::{assert_silent, device, new_device, render};
+use crate::support::methods;
 use crate::support::placing::{rich, weighted};
 use crate::support::settings::splats_alone;
 use glam::{DVec3, Vec3};
@@ -400,7 +401,8 @@ fn fifteen_storage_buffers_are_required() {
             let settings = Settings { splatting, alpha, ..method.settings() };
             Renderer::new(&device, options)?.render(&scene, &camera([64, 64]), &settings).map(drop)
         };
-        let choices = Method::ALL.iter().flat_map(|method| {
+        let methods = methods();
+        let choices = methods.iter().flat_map(|method| {
             [Rasterizer::Draw, Rasterizer::Compute].map(|rasterizer| (method, rasterizer, Alpha::Coverage))
         });
         let made: Result<Vec<_>, Error> =

@@ -427,11 +427,12 @@ fn compact_samples() {
     let mixed = scenes::model("scene:mixed?segments=200&points=30000&primitives=on").unwrap();
     let list = [
         ("10 k", bumpy(10_000).into(), Shading::Lit),
-        ("100 k", bumpy(100_000).into(), Shading::Colour),
+        ("mixed", mixed, Shading::Colour),
         ("no colours", Surfels { colours: None, ..bumpy(10_000) }.into(), Shading::Lit),
-        ("mixed", mixed, Shading::Lit),
+        ("100 k", bumpy(100_000).into(), Shading::Colour),
     ];
-    assert_passes(list, if_whole(&SIZES[1..3], &SHORT_SIZES[2..]), Precision::Half);
+    let some = list.into_iter().take(if_whole(4, 2));
+    assert_passes(some, if_whole(&SIZES[1..3], &SHORT_SIZES[2..]), Precision::Half);
 }
 
 #[test]
