@@ -17,7 +17,7 @@ use std::sync::Arc;
 use support::{Row, Table, whole};
 use surfel::bench::format;
 use surfel::embed::{self, Options, View};
-use surfel::geometry::Camera;
+use surfel::geometry::{Camera, Extent};
 use surfel::verify::scenes;
 use surfel::vk::Device;
 use surfel::{Rasterizer, Scene, Settings};
@@ -62,7 +62,7 @@ impl<'a> UploadedScene<'a> {
         // SAFETY: recorded outside a render pass; the staging memory stays until `run` has waited.
         let (scene, staging) = host.run(|cmd| Ok(unsafe { embed::upload(device, cmd, &surfels)? }))?;
         drop(staging);
-        let camera = Camera::framing(&scene.bounds(), 45f64.to_radians(), 1.0)?;
+        let camera = Camera::framing(&Extent::from(&scene.bounds()), DVec3::Y, 45f64.to_radians(), 1.0)?;
         let view = View::whole(camera, [SIDE; 2]);
         Ok(Self { host, device: device.clone(), scene: Arc::new(scene), view })
     }

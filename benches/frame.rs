@@ -5,12 +5,13 @@
 
 mod support;
 
+use glam::DVec3;
 use std::path::Path;
 use std::rc::Rc;
 use std::sync::Arc;
 use support::{Result, Row, Table, frames};
 use surfel::bench::engine::DeviceEngine;
-use surfel::geometry::{Camera, Parts};
+use surfel::geometry::{Camera, Extent, Parts};
 use surfel::load::load;
 use surfel::settings::{Alpha, Cull, Shading};
 use surfel::verify::scenes;
@@ -62,7 +63,7 @@ fn measure(table: &Table, device: &Arc<Device>, input: &str) -> Result<()> {
     let camera = if scenes::is_scene(input) {
         scenes::camera(input)?.camera(1.0, &bounds)?
     } else {
-        Camera::framing(&bounds, 45f64.to_radians(), 1.0)?
+        Camera::framing(&Extent::of(&model).unwrap_or_default(), DVec3::Y, 45f64.to_radians(), 1.0)?
     };
     let scene = Rc::new(Scene::upload(device, &model)?);
     let name = Path::new(input).file_stem().filter(|_| !scenes::is_scene(input));

@@ -2,11 +2,12 @@
 
 mod support;
 
+use glam::DVec3;
 use std::rc::Rc;
 use support::{Result, Row, Table, frames};
 use surfel::bench::engine::DeviceEngine;
 use surfel::bench::format;
-use surfel::geometry::{Camera, Surfels};
+use surfel::geometry::{Camera, Extent, Surfels};
 use surfel::settings::Shading;
 use surfel::verify::scenes::bumpy_sphere;
 use surfel::{Precision, Rasterizer, Scene, Settings};
@@ -16,7 +17,7 @@ fn main() -> Result<()> {
     let table = Table::new("a frame of the bumpy sphere, 1024×1024 px", Some(&device));
     let row = |order: &str, surfels: &Surfels| {
         let scene = Scene::upload(&device, surfels)?;
-        let camera = Camera::framing(&scene.bounds(), 45f64.to_radians(), 1.0)?;
+        let camera = Camera::framing(&Extent::from(&scene.bounds()), DVec3::Y, 45f64.to_radians(), 1.0)?;
         let settings = Settings { shading: Shading::Colour, ..Settings::default() };
         let rasterizer = Rasterizer::Compute.into();
         let engine = DeviceEngine::new(&device, Rc::new(scene), [1024; 2], rasterizer, Precision::Full)?;

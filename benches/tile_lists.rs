@@ -7,12 +7,13 @@
 
 mod support;
 
+use glam::DVec3;
 use support::Result;
 use surfel::bench::format;
 use surfel::estimate::Estimate;
 use surfel::formats::{ReadOptions, read};
 use surfel::frame::Splat;
-use surfel::geometry::{Camera, Surfels};
+use surfel::geometry::{Camera, Extent, Surfels};
 use surfel::settings::Settings;
 use surfel::verify::scenes::bumpy_sphere;
 use surfel::vk::Device;
@@ -64,7 +65,7 @@ fn main() -> Result<()> {
 /// The splats of a frame that shows all surfels.
 fn splats(device: &std::sync::Arc<Device>, surfels: &Surfels, settings: &Settings) -> Result<Vec<Splat>> {
     let scene = Scene::upload(device, surfels)?;
-    let camera = Camera::framing(&scene.bounds(), 45f64.to_radians(), 1.0)?;
+    let camera = Camera::framing(&Extent::from(&scene.bounds()), DVec3::Y, 45f64.to_radians(), 1.0)?;
     let size = [SIZE as u32; 2];
     let options = RenderOptions { size, rasterizer: Rasterizer::Compute.into(), ..Default::default() };
     let mut renderer = Renderer::new(device, options)?;

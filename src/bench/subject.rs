@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::estimate::Estimate;
 use crate::formats::{self, ReadOptions};
-use crate::geometry::{Bounds, Camera, Cloud, Model};
+use crate::geometry::{Bounds, Camera, Cloud, Extent, Model, Pose};
 use crate::progress::Progress;
 use crate::verify::scenes::{self, Surface, Viewpoint};
 use crate::verify::truth::{self, Mesh};
@@ -75,14 +75,11 @@ impl Subject {
             _ => Some(Mesh::new(&name, &cloud)?),
         };
         let mesh_name = if mesh.is_some() { file_of_mesh } else { String::new() };
-        let bounds = match &mesh {
-            Some(mesh) => truth::Traceable::bounds(mesh),
-            None => match Bounds::of(&cloud.positions) {
-                Some(bounds) => bounds.translated(cloud.origin),
-                None => return Err(Error::input(name, "no points: give points, or a mesh")),
-            },
+        let Some(extent) = Extent::of_cloud(&cloud) else {
+            return Err(Error::input(name, "no points: give points, or a mesh"));
         };
-        let (viewpoint, digest) = (framing(&bounds)?, mesh.as_ref().map(Mesh::digest).unwrap_or_default());
+        let bounds = mesh.as_ref().map_or(extent.bounds(), truth::Traceable::bounds);
+        let (viewpoint, digest) = (framing(&extent)?, mesh.as_ref().map(Mesh::digest).unwrap_or_default());
         Ok(Self {
             name,
             digest,
@@ -202,9 +199,7 @@ pub fn pixel_angle(from: &Viewpoint, rows: u32) -> f64 {
 }
 
 /// The viewpoint of `surfel render` for a square picture.
-fn framing(bounds: &Bounds) -> Result<Viewpoint> {
-    let camera = Camera::framing(bounds, FOV.to_radians(), 1.0)?;
-    let eye = camera.view.inverse().w_axis.truncate();
-    let up = DVec3::Y.to_array();
-    Ok(Viewpoint { eye: eye.to_array(), target: bounds.centre().to_array(), up, fov_y_deg: FOV })
+fn framing(extent: &Extent) -> Result<Viewpoint> {
+    let Pose { eye, target, up, .. } = extent.pose(DVec3::Y, FOV, 1.0)?;
+    Ok(Viewpoint { eye: eye.to_array(), target: target.to_array(), up: up.to_array(), fov_y_deg: FOV })
 }

@@ -4,7 +4,7 @@ use super::args;
 use glam::DVec3;
 use std::path::Path;
 use surfel::formats::camera as camera_file;
-use surfel::geometry::{Bounds, Camera, Pose, Span};
+use surfel::geometry::{Camera, Extent, Pose, Span};
 use surfel::{Error, Result};
 
 /// Default vertical angle of view, degrees.
@@ -15,14 +15,15 @@ pub fn read(args: &args::Camera) -> Result<Option<(&Path, Pose)>> {
     args.file.as_deref().map(|path| Ok((path, camera_file::read(path)?))).transpose()
 }
 
-/// The camera of `file`, or else of the arguments, which by default frames `bounds`.
+/// The camera of `file`, or else of the arguments, which by default frames `extent`.
 pub fn make(
     args: &args::Camera,
     file: Option<(&Path, Pose)>,
-    bounds: &Bounds,
+    extent: &Extent,
     size: [u32; 2],
 ) -> Result<Camera> {
-    let camera = pose(args, file.map(|(_, pose)| pose), bounds, size)?.camera(bounds, aspect(size));
+    let pose = pose(args, file.map(|(_, pose)| pose), extent, size)?;
+    let camera = pose.camera(&extent.bounds(), aspect(size));
     match file {
         Some((path, _)) => {
             camera.map_err(|error| Error::input(path.display().to_string(), error.to_string()))
@@ -32,17 +33,20 @@ pub fn make(
 }
 
 /// The pose of that camera, without near and far planes.
-pub fn pose(args: &args::Camera, file: Option<Pose>, bounds: &Bounds, size: [u32; 2]) -> Result<Pose> {
+pub fn pose(args: &args::Camera, file: Option<Pose>, extent: &Extent, size: [u32; 2]) -> Result<Pose> {
     if let Some(pose) = file {
         return Ok(pose);
     }
-    let fov = args.fov.unwrap_or(FOV);
-    let eye = match args.eye {
-        Some(eye) => eye,
-        None => framed_eye(bounds, fov, aspect(size))?,
-    };
+    let (fov, up) = (args.fov.unwrap_or(FOV), up(args, None));
     let span = args.parallel.map_or(Span::Angle(fov), Span::Height);
-    Ok(Pose { eye, target: args.target.unwrap_or(bounds.centre()), up: up(args, None), span })
+    let (eye, target) = match (args.eye, args.target) {
+        (Some(eye), target) => (eye, target.unwrap_or(extent.centre())),
+        (None, target) => {
+            let framed = extent.pose(up, fov, aspect(size))?;
+            (framed.eye, target.unwrap_or(framed.target))
+        }
+    };
+    Ok(Pose { eye, target, up, span })
 }
 
 /// Up direction of the picture, of any length.
@@ -52,9 +56,4 @@ pub fn up(args: &args::Camera, file: Option<(&Path, Pose)>) -> DVec3 {
 
 fn aspect(size: [u32; 2]) -> f64 {
     f64::from(size[0]) / f64::from(size[1])
-}
-
-/// Position of the eye that frames `bounds`.
-fn framed_eye(bounds: &Bounds, fov: f64, aspect: f64) -> Result<DVec3> {
-    Ok(Camera::framing(bounds, fov.to_radians(), aspect)?.view.inverse().w_axis.truncate())
 }

@@ -3,12 +3,13 @@
 use super::args::{PassTimes, Render};
 use super::report::{Gpu, HalfError, Report};
 use super::{camera, files, progress, reference, summary, turntable, vulkan};
+use glam::DVec3;
 use std::path::Path;
 use surfel::embed::Measured;
 use surfel::formats::colour_bar::ColourBar;
 use surfel::formats::image::{Encoded, Output, write};
 use surfel::frame::times::Times;
-use surfel::geometry::{Camera, Model, Parts};
+use surfel::geometry::{Camera, Extent, Model};
 use surfel::load::{Coloured, Colouring, LoadOptions, LoadedModel, load};
 use surfel::settings::Shading;
 use surfel::settings::methods::{Method, pull_push};
@@ -73,9 +74,14 @@ pub fn run(args: &Render) -> Result<()> {
     let settings = args.settings(&method);
     settings.check()?;
     settings.check_outputs(args.outputs())?;
-    let bounds = Parts::from(scene).bounds();
-    let bounds = bounds.ok_or_else(|| Error::Usage("the inputs hold nothing that can be drawn".into()))?;
-    let camera = camera::make(&args.camera, file, &bounds, args.size)?;
+    let extent = Extent::of(scene);
+    let extent = extent.ok_or_else(|| Error::Usage("the inputs hold nothing that can be drawn".into()))?;
+    let (middle, up) = (extent.centre(), camera::up(&args.camera, file));
+    let framed = args.turntable.map(|_| extent.turned_about(middle, up.normalize_or(DVec3::Y)));
+    let camera = camera::make(&args.camera, file, framed.as_ref().unwrap_or(&extent), args.size)?;
+    if let Some(note) = summary::culled_backs(&scene.surfels, &camera, &settings).filter(|_| !args.quiet) {
+        progress::say(&note);
+    }
     let (layers, size, frames, progress) = (args.outputs(), args.size, args.frames, &*bars);
     let split = args.times == Some(PassTimes::Split);
     let task = Task { scene, method, camera, settings, size, layers, frames, split, progress };
@@ -92,7 +98,7 @@ pub fn run(args: &Render) -> Result<()> {
     let bar = loaded.coloured.as_ref().filter(|_| args.color_bar).and_then(Coloured::bar);
     save(&outcome.picture, task.settings.shading, bar.as_ref(), &out)?;
     if let Some((count, pattern)) = args.turntable.zip(turntable::pattern(args)?) {
-        let cameras = turntable::cameras(&camera, bounds.centre(), camera::up(&args.camera, file), count);
+        let cameras = turntable::cameras(&camera, middle, up, count);
         let others = &cameras[1..];
         let save = |number: usize, mut picture: Picture| {
             if !out.is_png() {

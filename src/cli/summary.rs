@@ -1,6 +1,8 @@
 //! Summary of a model, as text.
 
-use surfel::geometry::Model;
+use surfel::Settings;
+use surfel::geometry::{Camera, Model, Surfels};
+use surfel::settings::Cull;
 
 /// Parts of a model: `5 surfels, 2 ribbons`.
 pub fn parts(Model { surfels, primitives }: &Model) -> String {
@@ -18,4 +20,30 @@ pub fn parts(Model { surfels, primitives }: &Model) -> String {
         (0, false) => others.join(", "),
         (count, _) => [vec![format!("{count} surfels")], others].concat().join(", "),
     }
+}
+
+/// Part of the surfels above which the user is told that they are culled.
+const MANY: f64 = 0.9;
+
+/// A line for the user, if nearly all surfels face away from the camera and are therefore not drawn.
+pub fn culled_backs(surfels: &Surfels, camera: &Camera, settings: &Settings) -> Option<String> {
+    let projection = camera.projection().ok().filter(|_| settings.cull == Cull::Back)?;
+    let (eye, forward) =
+        (camera.view.inverse().w_axis.truncate(), projection.forward * camera.view.row(2).truncate());
+    let is_two_sided = |i: usize| surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[i]);
+    let is_back = |&i: &usize| {
+        let ray = if projection.perspective {
+            surfels.positions[i].as_dvec3() + surfels.origin - eye
+        } else {
+            forward
+        };
+        ray.dot(surfels.normals[i].as_dvec3()) >= 0.0 && !is_two_sided(i)
+    };
+    let part = (0..surfels.len()).filter(is_back).count() as f64 / surfels.len().max(1) as f64;
+    (part > MANY).then(|| {
+        format!(
+            "{:.0} % of the surfels face away from the camera and are not drawn: give --cull none, or an --eye on their other side",
+            100.0 * part
+        )
+    })
 }

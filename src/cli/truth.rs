@@ -8,7 +8,7 @@ use super::progress::{self, Silent};
 use super::render::keep_layers;
 use std::path::Path;
 use surfel::formats::image::{Output, write};
-use surfel::geometry::{Bounds, Camera, Parts};
+use surfel::geometry::{Camera, Extent};
 use surfel::load::{LoadOptions, load, scene};
 use surfel::verify::scenes;
 use surfel::verify::truth::{self, Cache, Traceable};
@@ -27,7 +27,7 @@ pub fn run(args: &Truth) -> Result<()> {
     args.options().check()?;
     let file = camera::read(&args.camera)?;
     let bars = progress::bars(args.quiet);
-    let camera = camera::make(&args.camera, file, &bounds(args, &*bars)?, args.size)?;
+    let camera = camera::make(&args.camera, file, &extent(args, &*bars)?, args.size)?;
     let mut truth = match scene(&args.input) {
         Some(name) => trace(args, name, &*scenes::surface(name)?, &camera, &*bars)?,
         None => {
@@ -45,11 +45,12 @@ pub fn run(args: &Truth) -> Result<()> {
     Ok(())
 }
 
-/// The bounds that `surfel render` frames, so that both commands have the same default camera.
-fn bounds(args: &Truth, progress: &dyn Progress) -> Result<Bounds> {
+/// The extent that `surfel render` frames, so that both commands have the same default camera.
+fn extent(args: &Truth, progress: &dyn Progress) -> Result<Extent> {
     let input = std::slice::from_ref(&args.input);
     let loaded = load(input, &LoadOptions::default(), &Silent(progress))?;
-    Parts::from(&loaded.model).bounds().ok_or_else(|| Error::Usage("the input holds no points".into()))
+    let extent = Extent::of(&loaded.model);
+    extent.ok_or_else(|| Error::Usage("the input holds no points".into()))
 }
 
 /// Traces a scene, or reads its picture from the cache; `name` is its key.

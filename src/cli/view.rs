@@ -12,7 +12,7 @@ use std::ffi::OsString;
 use std::sync::Arc;
 use std::time::Instant;
 use surfel::estimate::Estimate;
-use surfel::geometry::{Bounds, Colours, Model};
+use surfel::geometry::{Colours, Extent, Model};
 use surfel::load::{Colouring, Listener, LoadOptions, load, scene};
 use surfel::settings::methods::Method;
 use surfel::{Error, Progress, Result};
@@ -32,7 +32,7 @@ pub fn run(args: View) -> Result<()> {
     };
     let (cameras, pose) = (args.camera.clone(), file.map(|(_, pose)| pose));
     let initial_camera =
-        move |bounds: &Bounds, size| given.then(|| camera::pose(&cameras, pose, bounds, size));
+        move |extent: &Extent, size| given.then(|| camera::pose(&cameras, pose, extent, size));
     let options = viewer::Options {
         inputs: args.inputs.clone(),
         size: args.size,

@@ -1,6 +1,6 @@
 //! Cameras: view and projection matrix.
 
-use super::Bounds;
+use super::{Bounds, Extent};
 use crate::error::{Error, Result};
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
@@ -31,9 +31,6 @@ pub struct Projection {
     /// Eye-space distance of the far plane; may be infinite in perspective.
     pub far: f64,
 }
-
-/// Radius of the framed sphere divided by that of the object's, so that the outline stays clear of the edge.
-const FRAME: f64 = 1.04;
 
 impl Camera {
     /// A perspective camera at `eye` that looks at `target`, with `up` upwards in the picture.
@@ -67,15 +64,14 @@ impl Camera {
         Ok(Self { view, projection, reversed: true })
     }
 
-    /// A perspective camera that frames `bounds`, from the front, a little from the right and above (y is up).
-    pub fn framing(bounds: &Bounds, fov_y: f64, aspect: f64) -> Result<Self> {
-        let radius = if bounds.radius > 0.0 { FRAME * bounds.radius } else { 1.0 };
-        // The sphere touches the narrower field of view.
-        let half = (0.5 * fov_y).tan().min((0.5 * fov_y).tan() * aspect).atan();
-        let distance = radius / half.sin();
-        let eye = bounds.centre() + distance * DVec3::new(1.0, 0.8, 1.6).normalize();
-        let near = Self::near_for(eye, bounds);
-        Self::look_at(eye, bounds.centre(), DVec3::Y, fov_y, aspect, near)
+    /// A perspective camera that [frames](Extent::pose) a model, with `up` upwards in the picture.
+    ///
+    /// `fov_y` is the full vertical angle in radians, `aspect` is width / height.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if the field of view is out of range or `up` is zero.
+    pub fn framing(extent: &Extent, up: DVec3, fov_y: f64, aspect: f64) -> Result<Self> {
+        extent.pose(up, fov_y.to_degrees(), aspect)?.camera(&extent.bounds(), aspect)
     }
 
     /// A near plane in front of everything in `bounds` that a viewer at `eye` may look at. With reversed float depth, a small one costs no
@@ -163,7 +159,7 @@ fn infinite_reversed(focal_x: f64, focal_y: f64, near: f64) -> DMat4 {
 }
 
 /// World to eye space: x right, y down, z forward.
-fn look_at_view(eye: DVec3, target: DVec3, up: DVec3) -> Result<DMat4> {
+pub(super) fn look_at_view(eye: DVec3, target: DVec3, up: DVec3) -> Result<DMat4> {
     let usage =
         |cause: &str| Error::Usage(format!("the camera {cause}: move the eye, the target or the up vector"));
     if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
@@ -262,7 +258,8 @@ mod tests {
     fn a_framed_box_lies_inside_the_picture() {
         let bounds = Bounds::of_box(DVec3::new(-1.0, 5.0, 2.0), DVec3::new(3.0, 6.0, 9.0));
         for aspect in [0.3, 1.0, 2.5] {
-            let clip = Camera::framing(&bounds, 0.8, aspect).unwrap().world_to_clip();
+            let clip =
+                Camera::framing(&Extent::from(&bounds), DVec3::Y, 0.8, aspect).unwrap().world_to_clip();
             for corner in 0..8 {
                 let pick =
                     |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };

@@ -44,11 +44,3 @@ impl ViewDirection {
         }
     }
 }
-
-/// Directions to the right and towards the viewer at a yaw of 0, orthogonal to `up`: right × up points towards the viewer.
-pub fn horizontal_axes(up: DVec3) -> [DVec3; 2] {
-    let most = up.abs().max_element();
-    let axis = DVec3::AXES[if up.x.abs() == most { 1 } else { 0 }];
-    let right = (axis - axis.dot(up) * up).normalize();
-    [right, right.cross(up)]
-}

@@ -50,7 +50,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::Arc;
 use surfel::frame::faster::FasterRasterizers;
-use surfel::geometry::{Bounds, ColourMap, Model, Pose, ValueRange};
+use surfel::geometry::{ColourMap, Extent, Model, Pose, ValueRange};
 use surfel::settings::methods::Method;
 use surfel::vk::{Device, DeviceOptions};
 use surfel::{Progress, Rasterizer, RasterizerChoice, Result, Settings};
@@ -138,8 +138,8 @@ pub struct ColourBy {
     pub range: Option<ValueRange>,
 }
 
-/// Makes the first camera for the bounds of a scene and a picture of this width and height, px; `None` frames the whole scene.
-pub type InitialCamera = Box<dyn Fn(&Bounds, [u32; 2]) -> Option<Result<Pose>>>;
+/// Makes the first camera for the extent of a scene and a picture of this width and height, px; `None` frames the whole scene.
+pub type InitialCamera = Box<dyn Fn(&Extent, [u32; 2]) -> Option<Result<Pose>>>;
 
 /// Properties of points that the scene itself does not use, for colours to show.
 #[derive(Clone)]

@@ -2,10 +2,10 @@
 //!
 //! Positions on the picture are px from its top left; angles are radians. There is no inertia, and moves do not depend on the frame rate.
 
-use super::directions::{Up, ViewDirection, horizontal_axes};
+use super::directions::{Up, ViewDirection};
 use super::viewport::Viewport;
 use glam::{DMat3, DVec2, DVec3};
-use surfel::geometry::{Bounds, Pose, Span};
+use surfel::geometry::{Bounds, Extent, Pose, Span, horizontal_axes};
 
 /// Angle by which the camera turns when the cursor moves by the height of the picture.
 const TURN: f64 = std::f64::consts::PI;
@@ -34,11 +34,15 @@ pub struct Orbit {
 }
 
 impl Orbit {
-    /// Frames `bounds` from the front, a little from the right and from above.
-    pub fn framing(bounds: &Bounds, up: Up, viewport: &Viewport) -> Self {
-        let (eye, pivot) = (DVec3::ZERO, DVec3::ZERO);
-        let mut orbit = Self { eye, pivot, up: up.vector(), yaw: 0.56, pitch: 0.4 };
-        orbit.frame(bounds, viewport);
+    /// Frames `extent` from its [default direction](Extent::view_direction).
+    pub fn framing(extent: &Extent, up: Up, viewport: &Viewport) -> Self {
+        let up = up.vector();
+        let [right, front] = horizontal_axes(up);
+        let towards = extent.view_direction([right, up, front]);
+        let yaw = f64::atan2(towards.dot(right), towards.dot(front));
+        let pitch = f64::atan2(towards.dot(up), towards.cross(up).length());
+        let mut orbit = Self { eye: DVec3::ZERO, pivot: DVec3::ZERO, up, yaw, pitch };
+        orbit.frame(extent, viewport);
         orbit
     }
 
@@ -189,15 +193,11 @@ impl Orbit {
         self.up
     }
 
-    /// Frames `bounds`; the direction of view stays.
-    pub fn frame(&mut self, bounds: &Bounds, viewport: &Viewport) {
-        let radius = if bounds.radius > 0.0 { 1.04 * bounds.radius } else { 1.0 };
-        let slope = viewport.tan_half_fovs().into_iter().fold(f64::INFINITY, f64::min);
-        // The edge of the view volume touches the sphere at a right angle to its radius.
-        let slant = if viewport.parallel { 1.0 } else { slope.hypot(1.0) };
-        let distance = radius * slant / slope;
-        self.pivot = bounds.centre();
-        self.centre_pivot(distance);
+    /// Frames `extent`; the direction of view stays.
+    pub fn frame(&mut self, extent: &Extent, viewport: &Viewport) {
+        self.eye = extent.eye(self.rotation(), viewport.tan_half_fovs(), viewport.parallel);
+        let forward = self.axes()[0];
+        self.pivot = self.eye + (extent.centre() - self.eye).dot(forward) * forward;
     }
 }
 

@@ -8,7 +8,7 @@ use super::{ColourBy, Loaded, PointProperties};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::Arc;
-use surfel::geometry::{Colours, Model, Surfels, ValueRange};
+use surfel::geometry::{Colours, Extent, Model, Surfels, ValueRange};
 use surfel::scene::{Changes, ColourStream};
 use surfel::vk::Device;
 use surfel::{Error, Progress, Result, Scene};
@@ -17,6 +17,8 @@ use surfel::{Error, Progress, Result, Scene};
 pub struct Source {
     /// The model as it was loaded.
     model: Arc<Model>,
+    /// What a camera frames.
+    extent: Extent,
     /// The exact surface, or why there is none.
     surface: std::result::Result<ExactSurface, String>,
     /// Further properties of the points; `None` for a preview.
@@ -51,6 +53,7 @@ impl Source {
     /// The source of what was loaded.
     pub fn new(Loaded { model, surface, properties, colour_by, info, up, method: _ }: Loaded) -> Self {
         let mut source = Self {
+            extent: Extent::of(&model).unwrap_or_default(),
             model: Arc::new(model),
             surface,
             properties,
@@ -89,6 +92,11 @@ impl Source {
             }
         };
         self.set_attribute(attribute, range);
+    }
+
+    /// What a camera frames.
+    pub fn extent(&self) -> &Extent {
+        &self.extent
     }
 
     /// What is known of the scene.
@@ -238,6 +246,7 @@ impl Source {
     /// A copy for another thread, without the property that is being read.
     pub fn snapshot(&self) -> Self {
         Self {
+            extent: self.extent.clone(),
             model: self.model.clone(),
             surface: self.surface.clone(),
             properties: self.properties.clone(),

@@ -14,7 +14,7 @@ use super::{MethodSettings, Options, appearance::SavedAppearance};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 use std::sync::Arc;
-use surfel::geometry::{Camera, ColourScale, Pose};
+use surfel::geometry::{Camera, ColourScale, Extent, Pose};
 use surfel::settings::methods::Method;
 use surfel::settings::{Choice, Shading};
 use surfel::vk::Device;
@@ -76,7 +76,7 @@ impl ViewState {
         (method, mut source): (Method, Source),
         origin: SceneOrigin,
     ) {
-        let framed = Orbit::framing(&scene.bounds(), self.up, &self.viewport);
+        let framed = Orbit::framing(source.extent(), self.up, &self.viewport);
         let (levels, given) = (Vec::new(), None);
         let lost = self.lost.take().map(|(method, settings, appearance)| {
             source.restore(&appearance);
@@ -193,12 +193,12 @@ impl ViewState {
 
     /// What a frame of full quality renders, for adaptive resolution.
     pub fn workload(&self) -> Option<Workload> {
-        let SceneView { scene, levels, orbit, .. } = self.view.as_ref()?;
+        let SceneView { scene, levels, orbit, source, .. } = self.view.as_ref()?;
         let [width, height] = self.viewport.size.map(f64::from);
         Some(Workload {
             pixels: width * height,
             surfels: std::iter::once(scene).chain(levels).map(|scene| scene.count() as f64).collect(),
-            diameter_px: 2.0 * scene.bounds().radius / self.viewport.units_per_px(orbit.distance()),
+            diameter_px: 2.0 * source.extent().bounds().radius / self.viewport.units_per_px(orbit.distance()),
         })
     }
 
@@ -220,24 +220,24 @@ impl ViewState {
 
     /// The inputs of a frame at a level of detail; 0 is the scene itself.
     pub fn frame(&self, level: usize) -> Option<Result<FrameInputs<'_>>> {
-        let SceneView { scene, levels, settings, .. } = self.view.as_ref()?;
-        let camera = self.pose()?.camera(&scene.bounds(), self.viewport.aspect());
+        let SceneView { scene, levels, settings, source, .. } = self.view.as_ref()?;
+        let camera = self.pose()?.camera(&source.extent().bounds(), self.viewport.aspect());
         let coarser = level.checked_sub(1).and_then(|level| levels.get(level));
         let (scene, settings) =
             coarser.map_or((scene, Cow::Borrowed(settings)), |coarser| (coarser, level_settings(settings)));
         Some(camera.map(|camera| (scene, camera, settings)))
     }
 
-    /// The orbit, for the user to move, with the viewport and the scene.
-    pub fn orbit_mut(&mut self) -> Option<(&mut Orbit, &Viewport, &Scene)> {
-        let Self { view: Some(SceneView { orbit, scene, .. }), viewport, .. } = self else { return None };
-        Some((orbit, viewport, scene))
+    /// The orbit, for the user to move, with the viewport and what a camera frames.
+    pub fn orbit_mut(&mut self) -> Option<(&mut Orbit, &Viewport, &Extent)> {
+        let Self { view: Some(SceneView { orbit, source, .. }), viewport, .. } = self else { return None };
+        Some((orbit, viewport, source.extent()))
     }
 
     /// Zooms by steps of the wheel towards the position `at`, px.
     pub fn zoom(&mut self, steps: f64, at: DVec2) {
-        if let Some((orbit, viewport, scene)) = self.orbit_mut() {
-            orbit.zoom(steps, at, None, viewport, &scene.bounds());
+        if let Some((orbit, viewport, extent)) = self.orbit_mut() {
+            orbit.zoom(steps, at, None, viewport, &extent.bounds());
         }
     }
 
@@ -311,7 +311,7 @@ impl ViewState {
                 view.settings.shading = after.skip(1).copied().next().unwrap_or(Shading::Lit);
             }
             Action::Parallel => self.viewport.parallel = !self.viewport.parallel,
-            Action::Frame => view.orbit.frame(&view.scene.bounds(), &self.viewport),
+            Action::Frame => view.orbit.frame(view.source.extent(), &self.viewport),
             Action::ViewFrom(direction) => view.orbit.view_from(direction),
             Action::Up(up) => {
                 let down = view.orbit.up() == up.vector();

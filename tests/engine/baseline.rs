@@ -5,7 +5,7 @@ use crate::support::scenes::{self, Case};
 use crate::support::settings::splats_alone;
 use crate::support::texture::textured;
 use glam::{DVec3, Vec3};
-use surfel::geometry::{Camera, Cloud, Colours, Surfels};
+use surfel::geometry::{Camera, Cloud, Colours, Extent, Surfels};
 use surfel::settings::{Alpha, Cull, Shading, Widen};
 use surfel::verify::baseline::{Baseline, Kind};
 use surfel::verify::reference::{Comparison, Expected, Tolerance};
@@ -296,7 +296,7 @@ fn a_centre_on_an_edge_is_in_the_pixel_to_the_right_and_below() {
 #[test]
 fn frames_sum_only_what_they_need() {
     let surfels = bumpy_sphere(5_000, &mut Random(1));
-    let camera = Camera::framing(&surfels.bounds().unwrap(), 0.8, 1.0).unwrap();
+    let camera = Camera::framing(&Extent::of(&surfels).unwrap(), DVec3::Y, 0.8, 1.0).unwrap();
     let settings = splats_alone();
     for kind in [Kind::Pixels, Kind::Splats] {
         let mut baseline = Baseline::new(&surfels).unwrap();
@@ -321,7 +321,7 @@ fn unsupported_frames_are_refused() {
     assert!(matches!(Baseline::new(&Surfels::default()), Err(Error::Usage(_))));
     let uneven = Surfels { radii: Vec::new(), ..surfels.clone() };
     assert!(matches!(Baseline::new(&uneven), Err(Error::Usage(_))));
-    let camera = Camera::framing(&surfels.bounds().unwrap(), 0.8, 1.0).unwrap();
+    let camera = Camera::framing(&Extent::of(&surfels).unwrap(), DVec3::Y, 0.8, 1.0).unwrap();
     let flat = Camera { projection: glam::DMat4::ZERO, ..camera };
     let mut baseline = Baseline::new(&surfels).unwrap();
     let negative = Settings { cutoff: -1.0, ..splats_alone() };

@@ -4,7 +4,7 @@ use crate::support::gpu::{assert_silent, device, render};
 use glam::{DVec2, DVec3, Vec3};
 use std::sync::Arc;
 use surfel::capture::{Captured, VIEWS, capture, capture_region, overlaps};
-use surfel::geometry::{Camera, Surfels, Weights};
+use surfel::geometry::{Camera, Extent, Surfels, Weights};
 use surfel::settings::methods::object_ewa;
 use surfel::settings::splatting::{Filter, Footprint, Normalization, Splatting};
 use surfel::settings::{Cull, Shading};
@@ -186,7 +186,7 @@ fn weights_even_out_the_sums_by_either_rasterizer() {
     ] {
         let preset = Settings { cull: Cull::None, ..object_ewa::METHOD.settings() };
         let (surfels, found) = captured(&device, &surfels, &preset);
-        let camera = Camera::framing(&surfels.bounds().unwrap(), 0.8, 1.0).unwrap();
+        let camera = Camera::framing(&Extent::of(&surfels).unwrap(), DVec3::Y, 0.8, 1.0).unwrap();
         // What the paper's weights do that no picture is needed for: 1/Σw at every centre, exact, and the same all over the surfel.
         let all: Vec<u32> = (0..surfels.len() as u32).collect();
         let exact = overlaps(&surfels, &preset, &all).into_iter().map(|sum| ((1.0 / sum) as f32, None));
@@ -275,7 +275,7 @@ fn every_window_has_its_own_weights() {
     let weight = |i: usize| 0.05 + 0.01 * (i % 31) as f32;
     let corners = |i: usize| i.is_multiple_of(5).then(|| [1, 2, 3, 4].map(|k| weight(k * i)));
     surfels.weights = Some(Weights::collect((0..50_000).map(|i| (weight(i), corners(i)))));
-    let camera = Camera::framing(&surfels.bounds().unwrap(), 0.8, 1.0).unwrap();
+    let camera = Camera::framing(&Extent::of(&surfels).unwrap(), DVec3::Y, 0.8, 1.0).unwrap();
     let settings = object_ewa::progressive(true);
     let size = [128, 128];
     let expected = Expected::new(&surfels, &camera, size, &settings, &Tolerance::default()).unwrap();

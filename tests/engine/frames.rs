@@ -7,7 +7,7 @@ use crate::support::settings::splats_alone;
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 use surfel::frame::FramePlan;
-use surfel::geometry::{Camera, Colours, Ellipse, Surfels, Weights};
+use surfel::geometry::{Camera, Colours, Ellipse, Extent, Surfels, Weights};
 use surfel::settings::methods::Method;
 use surfel::settings::methods::object_ewa::{self, Progressive};
 use surfel::settings::splatting::{Normalization, Splatting, Visibility};
@@ -371,7 +371,11 @@ fn too_few_storage_buffers_are_an_error() {
     let options = RenderOptions { size: [64, 64], ..Default::default() };
     let made = Renderer::new(&device, options).and_then(|mut renderer| {
         let scene = Scene::upload(&device, &sphere(100))?;
-        renderer.render_picture(&scene, &Camera::framing(&scene.bounds(), 0.8, 1.0)?, &splats_alone())
+        renderer.render_picture(
+            &scene,
+            &Camera::framing(&Extent::from(&scene.bounds()), DVec3::Y, 0.8, 1.0)?,
+            &splats_alone(),
+        )
     });
     let cause = made.map(drop).unwrap_err().to_string();
     assert!(cause.contains("storage buffers") && cause.contains("allows 4"), "{cause}");

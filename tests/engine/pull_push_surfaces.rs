@@ -5,11 +5,10 @@ use crate::support::gpu::{assert_silent, device};
 use crate::support::mesh;
 use crate::support::pyramids::{FrameCase, Rendered};
 use crate::support::settings::points_alone;
-#[allow(dead_code)] // of what is shared
 use glam::DVec3;
 use std::sync::Arc;
 use surfel::bench::subject::Subject;
-use surfel::geometry::{Cloud, Surfels};
+use surfel::geometry::{Camera, Cloud, Extent, Surfels};
 use surfel::settings::Cull;
 use surfel::settings::pull_push::{PullPush, Rules};
 use surfel::verify::truth::{self, Filter, Options};
@@ -29,7 +28,7 @@ struct Faults {
 
 /// What rays through the pixels' centres meet: a surface with its distance, or 0.
 fn depths(subject: &Subject) -> Vec<f32> {
-    let camera = subject.camera(&subject.viewpoint(), 0.0, SIZE).unwrap();
+    let camera = camera(subject);
     let options = Options { filter: Filter::Point, ..Default::default() };
     let settings = points_alone();
     let Picture { depth, .. } =
@@ -58,10 +57,15 @@ fn faults(truth: &[f32], made: &Rendered, behind: f64) -> Faults {
     }
 }
 
+/// A camera that sees the model from a distance at which it can be turned.
+fn camera(subject: &Subject) -> Camera {
+    Camera::framing(&Extent::from(&subject.bounds()), DVec3::Y, 45f64.to_radians(), 1.0).unwrap()
+}
+
 fn case<'a>(subject: &Subject, surfels: &'a Surfels, rules: Rules) -> FrameCase<'a> {
     let pull_push = PullPush::of(rules);
     let settings = Settings { cull: Cull::Back, pull_push: Some(pull_push), ..points_alone() };
-    let camera = subject.camera(&subject.viewpoint(), 0.0, SIZE).unwrap();
+    let camera = camera(subject);
     let (name, precision) = (subject.name.clone(), Precision::Full);
     FrameCase { name, parts: surfels.into(), camera, size: SIZE, settings, pull_push, precision }
 }

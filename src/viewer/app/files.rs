@@ -15,7 +15,7 @@ use surfel::settings::methods::Method;
 use surfel::{Result, Scene};
 
 impl App {
-    /// Shows the scene of a load: from the camera of the options or of a file, or framed. The bounds of the whole scene differ from those of its
+    /// Shows the scene of a load: from the camera of the options or of a file, or framed. The extent of the whole scene differs from that of its
     /// preview, so its camera is made again unless the user has moved it.
     pub(super) fn set_scene(
         &mut self,
@@ -26,7 +26,7 @@ impl App {
         let moved = self.state.has_moved_preview(origin.load);
         self.is_first &= self.state.orbit_mut().is_none() || self.state.is_preview();
         let size = self.state.viewport.size;
-        let initial = (self.options.initial_camera)(&scene.bounds(), size).filter(|_| self.is_first);
+        let initial = (self.options.initial_camera)(loaded.1.extent(), size).filter(|_| self.is_first);
         let next = if origin.preview { self.next_pose } else { self.next_pose.take() };
         let pose = next.map(Ok).or(initial).filter(|_| !moved).transpose()?;
         if let Some(pose) = &pose {

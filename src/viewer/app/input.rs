@@ -78,13 +78,13 @@ impl App {
         let delta = to - self.input.cursor;
         self.input.cursor = to;
         let (button, shift) = (self.input.button, self.input.modifiers.shift_key());
-        let Some((orbit, viewport, scene)) = self.state.orbit_mut() else { return };
+        let Some((orbit, viewport, extent)) = self.state.orbit_mut() else { return };
         match button {
             Some(MouseButton::Left) if !shift => orbit.turn(delta, viewport),
             Some(MouseButton::Left | MouseButton::Middle) => orbit.pan(delta, viewport),
             Some(MouseButton::Right) => {
                 let steps = -delta.y / PX_PER_STEP;
-                orbit.zoom(steps, viewport.centre(), None, viewport, &scene.bounds());
+                orbit.zoom(steps, viewport.centre(), None, viewport, &extent.bounds());
             }
             _ => return,
         }
