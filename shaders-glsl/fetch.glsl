@@ -82,14 +82,20 @@ Sample sample_of(uint i, ivec2 pixel, uint nearest) {
 #include "lib/surfel_attributes.glsl"
 #include "lib/point.glsl"
 
+// Least radius of a point's disc, px: smaller ones would not cover their own pixel's centre.
+const float LEAST_RADIUS = 1.0;
+
 Sample sample_of(uint i, ivec2 pixel, uint nearest) {
     Point point;
     point_of(i, point);
     float radius = radius_of(i);
     // A circle of the ellipse's area.
     if (ELLIPSES) radius *= sqrt(ellipse_of(i).w);
+    float least = PAPER ? 0.0 : LEAST_RADIUS / focal_scale() * (PERSPECTIVE ? point.distance : 1.0);
     vec3 normal = normal_of(i);
     Sample s = NO_SAMPLE;
+    s.subpixel = radius < least;
+    radius = max(radius, least);
     s.near = s.depth = point.distance;
     s.far = point.distance + (PAPER ? 1.0 : 2.0) * radius;
     s.radius = focal_scale() * radius / (PERSPECTIVE ? point.distance : 1.0);

@@ -67,6 +67,7 @@ void main() {
     if (of_front.count > 0.0) {
         mean.near = front.near;
         mean.tube = front.tube;
+        mean.subpixel = front.subpixel;
         mean.depth /= of_front.count;
         mean.radius /= of_front.count;
         mean.displacement /= of_front.count;

@@ -28,11 +28,12 @@ struct Sample {
     vec3 normal;       // world space; of a tube, the tangent
     vec3 colour;       // linear
     bool tube;         // of a tube: the disc faces the eye, around a point of the axis
+    bool subpixel;     // of a point whose own disc is smaller: see LEAST_RADIUS
     vec2 coordinates;  // of the disc's centre in the texture
     uint id;           // id of the point, or of the nearest of those that were averaged
 };
 
-const Sample NO_SAMPLE = Sample(0.0, 0.0, 0.0, 0.0, vec2(0.0), vec3(0.0), vec3(0.0), false, vec2(0.0), NOBODY);
+const Sample NO_SAMPLE = Sample(0.0, 0.0, 0.0, 0.0, vec2(0.0), vec3(0.0), vec3(0.0), false, false, vec2(0.0), NOBODY);
 
 // Normal or tangent, oriented like that of `other`: a tangent has no sign.
 vec3 aligned_direction(Sample s, Sample other) {
@@ -50,7 +51,7 @@ vec2 coordinate_offset(Sample s, Sample other) {
 //     full      near, radius, displacement x y, normal x y z, far, depth, colour r g b or coordinates u v, id
 //     compact   near, displacement, radius and far − near, normal, depth, colour or coordinates u v, id
 //
-// The radius of a tube's sample is stored negated.
+// The radius of a tube's sample is stored negated, and so is `near` of a subpixel one.
 struct Words {
     uvec4 quads[3];
     uint singles[2];
@@ -67,15 +68,15 @@ uint get_word(Words words, uint at) {
 
 Words pack_sample(Sample s) {
     Words words = Words(uvec4[3](uvec4(0), uvec4(0), uvec4(0)), uint[2](0, 0));
-    float radius = s.tube ? -s.radius : s.radius;
+    float radius = s.tube ? -s.radius : s.radius, near = s.subpixel ? -s.near : s.near;
     uvec3 colour = floatBitsToUint(TEXTURE ? vec3(s.coordinates, 0.0) : s.colour);
     if (COMPACT) {
         uint size = pack_halves(vec2(radius, 0.0)) | pack_length(max(s.far - s.near, 0.0)) << 16;
-        words.quads[0] = uvec4(floatBitsToUint(s.near), pack_halves(s.displacement), size, pack_direction(s.normal));
+        words.quads[0] = uvec4(floatBitsToUint(near), pack_halves(s.displacement), size, pack_direction(s.normal));
         set_word(words, 4, floatBitsToUint(s.depth));
         if (!TEXTURE) colour.x = UNBOUNDED_COLOURS ? pack_shared(s.colour) : pack_roots(s.colour);
     } else {
-        words.quads[0] = floatBitsToUint(vec4(s.near, radius, s.displacement));
+        words.quads[0] = floatBitsToUint(vec4(near, radius, s.displacement));
         words.quads[1] = floatBitsToUint(vec4(s.normal, s.far));
         set_word(words, 8, floatBitsToUint(s.depth));
     }
@@ -98,15 +99,17 @@ Sample unpack_sample(Words words) {
     vec3 colour = uintBitsToFloat(bits);
     if (COMPACT) {
         uvec4 q = words.quads[0];
-        float near = uintBitsToFloat(q.x), depth = uintBitsToFloat(get_word(words, 4));
+        float near = abs(uintBitsToFloat(q.x)), depth = uintBitsToFloat(get_word(words, 4));
         if (!TEXTURE) colour = UNBOUNDED_COLOURS ? unpack_shared(bits.x) : unpack_roots(bits.x);
         bool tube = TUBES && (q.z >> 15 & 1) != 0;
         return Sample(near, near + unpack_length(q.z >> 16), depth, abs(unpackHalf2x16(q.z).x), unpackHalf2x16(q.y), unpack_direction(q.w), colour,
-                      tube, colour.xy, id);
+                      tube, q.x >> 31 != 0, colour.xy, id);
     }
     vec4 disc = uintBitsToFloat(words.quads[0]), surface = uintBitsToFloat(words.quads[1]);
     bool tube = TUBES && words.quads[0].y >> 31 != 0;
-    return Sample(disc.x, surface.w, uintBitsToFloat(get_word(words, 8)), abs(disc.y), disc.zw, surface.xyz, colour, tube, colour.xy, id);
+    bool subpixel = words.quads[0].x >> 31 != 0;
+    return Sample(
+        abs(disc.x), surface.w, uintBitsToFloat(get_word(words, 8)), abs(disc.y), disc.zw, surface.xyz, colour, tube, subpixel, colour.xy, id);
 }
 
 // load_NAME: the sample at a texel of the pyramid that is read at descriptor set SET; words_NAME: its words.

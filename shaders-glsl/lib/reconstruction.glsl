@@ -6,6 +6,8 @@ layout(constant_id = 65) const bool BOX_WEIGHTS = false; // of discs, by the pub
 
 // Widening of a disc's variance on level 0, px²; four times as much per level. Narrower discs leave holes.
 const float WIDENING = 0.25;
+// On level 0, further widening of discs of a radius of one pixel, px²; none from two pixels on. Points are sparse there.
+const float WIDENING_OF_SMALL = 0.15;
 // Negated ln of the weight at a disc's rim: σ is a third of the radius; half of it as published.
 const float RIM = 4.5, PAPER_RIM = 2.0;
 
@@ -51,6 +53,7 @@ Sample candidate(uint k, ivec2 pixel) {
 // Weight of a candidate for the pixel with this centre, 0 if its disc does not cover that. The front disc is the nearest that does; as
 // published, the one of greatest Gaussian weight.
 float weight_of(Sample s, vec2 centre, float widening, inout Sums sums) {
+    if (!PAPER && pass.level == 0) widening += WIDENING_OF_SMALL * clamp(2.0 - s.radius, 0.0, 1.0);
     float m2 = radii2(s, centre + s.displacement, -s.displacement, widening);
     bool covers = s.near > 0.0 && m2 <= 1.0;
     float weight = covers ? exp(-(PAPER ? PAPER_RIM : RIM) * m2) : 0.0;
@@ -93,6 +96,7 @@ Sample mean_of(Sums sums) {
     Sample mean = sums.mean;
     if (!(sums.total > 0.0)) return NO_SAMPLE;
     mean.tube = sums.front.tube;
+    mean.subpixel = sums.front.subpixel;
     mean.near /= sums.total;
     mean.far /= sums.total;
     mean.depth /= sums.total;
@@ -113,6 +117,22 @@ Sample mean_of(Sums sums) {
     return mean;
 }
 
+// Extent of points around a pixel's centre along x, y and the diagonals, px.
+struct Surroundings {
+    vec4 least, most;
+};
+
+void surround(Sample s, inout Surroundings around) {
+    vec4 along = vec4(s.displacement, s.displacement.x + s.displacement.y, s.displacement.x - s.displacement.y);
+    around.least = s.near > 0.0 ? min(around.least, along) : around.least;
+    around.most = s.near > 0.0 ? max(around.most, along) : around.most;
+}
+
+// Whether points are on all sides of the centre.
+bool is_surrounded(Surroundings around) {
+    return all(lessThanEqual(around.least, vec4(0.0))) && all(greaterThanEqual(around.most, vec4(0.0)));
+}
+
 // The final sample of a pixel of the level.
 Sample reconstructed(ivec2 pixel) {
     vec2 centre = level_centre(pass.level, pixel);
@@ -131,6 +151,21 @@ Sample reconstructed(ivec2 pixel) {
 #define ADD(K) if (K < CANDIDATES) add(samples[K], weights[K], centre, sums);
     WEIGHT(0) WEIGHT(1) WEIGHT(2) WEIGHT(3) WEIGHT(4) WEIGHT(5) WEIGHT(6) WEIGHT(7) WEIGHT(8) WEIGHT(9) WEIGHT(10) WEIGHT(11) WEIGHT(12)
     ADD(0) ADD(1) ADD(2) ADD(3) ADD(4) ADD(5) ADD(6) ADD(7) ADD(8) ADD(9) ADD(10) ADD(11) ADD(12)
+    // Discs that are widened to a pixel reach beyond the outline: there, a pixel is covered if points are on all sides of its centre, of whatever
+    // surface. Steep surfaces are dense, so that none of them has a hole.
+    if (!PAPER && pass.level == 0 && sums.front.subpixel) {
+        Surroundings around = Surroundings(vec4(1e38), vec4(-1e38));
+        surround(samples[4], around);
+        surround(samples[5], around);
+        surround(samples[6], around);
+        surround(samples[7], around);
+        surround(samples[8], around);
+        surround(samples[9], around);
+        surround(samples[10], around);
+        surround(samples[11], around);
+        surround(samples[12], around);
+        if (!is_surrounded(around)) return NO_SAMPLE;
+    }
     Sample mean = mean_of(sums), point;
     bool has_mean = mean.near > 0.0;
     if (PAPER) {

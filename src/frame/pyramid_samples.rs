@@ -24,6 +24,8 @@ pub struct PyramidSample {
     pub normal: [f32; 3],
     /// Whether it is of a tube: the disc faces the eye, around a point of the axis.
     pub tube: bool,
+    /// Whether it is of a point whose own disc has a radius of less than a pixel.
+    pub subpixel: bool,
     /// Linear colour, in pyramids with colours.
     pub colour: Option<[f32; 3]>,
     /// Texture coordinates of the disc's centre, in pyramids with a texture.
@@ -54,7 +56,8 @@ impl PyramidSample {
         let first = format.before_colour() as usize;
         let mut known = match format.precision {
             Precision::Full => Self {
-                near: float(0),
+                near: float(0).abs(),
+                subpixel: words[0] >> 31 != 0,
                 radius: float(1).abs(),
                 tube: words[1] >> 31 != 0,
                 displacement: [float(2), float(3)],
@@ -66,11 +69,12 @@ impl PyramidSample {
                 id: None,
             },
             Precision::Half => Self {
-                near: float(0),
+                near: float(0).abs(),
+                subpixel: words[0] >> 31 != 0,
                 displacement: compact::halves(words[1]),
                 radius: compact::halves(words[2])[0].abs(),
                 tube: words[2] >> 15 & 1 != 0,
-                far: float(0) + compact::length(words[2] >> 16),
+                far: float(0).abs() + compact::length(words[2] >> 16),
                 normal: compact::direction(words[3]),
                 depth: float(4),
                 colour: (format.colour == 1).then(|| match format.unbounded_colours {

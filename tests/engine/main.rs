@@ -29,6 +29,7 @@ mod pull_push;
 mod pull_push_levels;
 mod pull_push_lines;
 mod pull_push_points;
+mod pull_push_sizes;
 mod pull_push_surfaces;
 mod rasterizers;
 mod reference;

@@ -378,6 +378,13 @@ fn many_points() {
 }
 
 #[test]
+fn points_smaller_than_a_pixel() {
+    for precision in [Precision::Full, Precision::Half] {
+        assert_passes([("300 k", bumpy(300_000), Shading::Lit)], &[[96, 64]], precision);
+    }
+}
+
+#[test]
 fn two_sided_ellipses_and_no_colours() {
     let named = |name: &str| cases().into_iter().find(|case: &Case| case.name == name).unwrap().surfels;
     let list = [

@@ -176,6 +176,7 @@ mod tests {
                     radius: place.z.abs(),
                     normal: vector().normalize(),
                     tube: false,
+                    subpixel: false,
                     colour,
                     coordinates: DVec2::ZERO,
                     id: 0,

@@ -36,6 +36,12 @@ impl Decisions {
         value <= limit
     }
 
+    /// Whether `value`, a computed length in px, is 0 or less.
+    pub fn is_below(&self, value: f64) -> bool {
+        self.record(value.abs());
+        value <= 0.0
+    }
+
     /// Whether a disc covers a position at this distance from its centre.
     pub fn covers(&self, Radii2 { value, summands }: Radii2) -> bool {
         self.record((value - 1.0).abs() / summands.max(1.0));

@@ -60,6 +60,8 @@ pub struct Sample {
     pub normal: DVec3,
     /// Whether it is a sample of a tube: a disc that faces the eye, around a point of the axis.
     pub tube: bool,
+    /// Whether it is of a point whose own disc has a radius of less than a pixel: [`Sample::radius`] is that of a pixel.
+    pub subpixel: bool,
     /// Linear; unused where the surface has a texture.
     pub colour: DVec3,
     /// Texture coordinates of the disc's centre, if the surface has a texture.

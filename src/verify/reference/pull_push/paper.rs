@@ -92,6 +92,7 @@ fn blend(
         radius: mean(&|sample| sample.radius),
         normal: mean3(&|sample| sample.aligned_direction(first)).normalize_or_zero(),
         tube: first.tube,
+        subpixel: first.subpixel,
         colour: mean3(&|sample| sample.colour),
         coordinates: DVec2::ZERO,
         id: first.id,

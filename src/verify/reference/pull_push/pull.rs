@@ -47,6 +47,7 @@ pub fn mean_of_front(own: DVec2, discs: &[(Sample, DVec2)], decisions: &Decision
         radius: mean(&|sample| sample.radius),
         normal: mean3(&|sample| sample.aligned_direction(front)).normalize_or_zero(),
         tube: front.tube,
+        subpixel: front.subpixel,
         colour: mean3(&|sample| sample.colour),
         coordinates: front.coordinates
             + mean3(&|sample| sample.coordinate_offset(front).extend(0.0)).truncate(),

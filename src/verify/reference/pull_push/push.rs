@@ -8,6 +8,9 @@ use glam::{DMat2, DVec2, DVec3};
 /// Widening of a disc's variance on level 0, px²; four times as much per level. Narrower discs leave holes.
 const WIDENING: f64 = 0.25;
 
+/// On level 0, further widening of discs of a radius of one pixel, px²; none from two pixels on. Points are sparse there.
+const WIDENING_OF_SMALL: f64 = 0.15;
+
 /// Negated `ln` of the weight at a disc's rim: σ is a third of the radius.
 const RIM: f64 = 4.5;
 
@@ -40,7 +43,8 @@ pub fn pass(
         let candidate = |level: &Level, at: [i64; 2]| {
             let sample = level.at(at)?;
             let disc = level.centre(at) + sample.displacement;
-            let radii2 = rays.radii2(&sample, disc, own, widening);
+            let small = if pulled.level == 0 { (2.0 - sample.radius).clamp(0.0, 1.0) } else { 0.0 };
+            let radii2 = rays.radii2(&sample, disc, own, widening + WIDENING_OF_SMALL * small);
             decisions.covers(radii2).then(|| Candidate {
                 sample,
                 disc,
@@ -54,6 +58,12 @@ pub fn pass(
         // to others.
         let shown = pulled.level > 0 || beside[4].is_some();
         let candidates: Vec<_> = above.into_iter().chain(beside).flatten().collect();
+        // Discs that are widened to a pixel reach beyond the outline: there, a pixel is covered if points are on all sides
+        // of its centre, of whatever surface. Steep surfaces are dense, so that none of them has a hole.
+        let is_subpixel = front(&candidates).is_some_and(|front| front.subpixel);
+        if pulled.level == 0 && is_subpixel && !is_surrounded(pulled, at, decisions) {
+            return None;
+        }
         let surface = blend(rays, own, &candidates, pulled.level == 0, decisions);
         match (pulled.at(at).filter(|_| shown), surface) {
             (Some(point), Some(surface)) if !decisions.at_most(point.near, surface.far) => Some(surface),
@@ -87,6 +97,27 @@ fn neighbours([x, y]: [i64; 2]) -> [[i64; 2]; 9] {
     std::array::from_fn(|i| [x + i as i64 % 3 - 1, y + i as i64 / 3 - 1])
 }
 
+fn front(candidates: &[Candidate]) -> Option<&Sample> {
+    candidates.iter().map(|c| &c.sample).min_by(|a, b| a.near.total_cmp(&b.near))
+}
+
+/// Whether the points of a pixel and its neighbours are on all sides of its centre: along x, y and the diagonals.
+fn is_surrounded(pulled: &Level, at: [i64; 2], decisions: &Decisions) -> bool {
+    let own = pulled.centre(at);
+    let points: Vec<DVec2> = neighbours(at)
+        .into_iter()
+        .filter_map(|at| Some(pulled.centre(at) + pulled.at(at)?.displacement - own))
+        .collect();
+    let axes = [DVec2::X, DVec2::Y, DVec2::ONE, DVec2::new(1.0, -1.0)];
+    let sides = axes.into_iter().flat_map(|axis| [axis, -axis]);
+    // No short circuit: every test is recorded in `decisions`.
+    let is_beyond = |side: DVec2| {
+        let least = points.iter().map(|point| point.dot(side)).fold(f64::INFINITY, f64::min);
+        !decisions.is_below(least)
+    };
+    sides.map(is_beyond).filter(|beyond| *beyond).count() == 0
+}
+
 /// The weighted mean of the candidates that belong to the nearest surface and are of its kind, tube or not, for the
 /// pixel with centre `own`.
 fn blend(
@@ -96,7 +127,7 @@ fn blend(
     finest: bool,
     decisions: &Decisions,
 ) -> Option<Sample> {
-    let front = candidates.iter().map(|c| &c.sample).min_by(|a, b| a.near.total_cmp(&b.near))?;
+    let front = front(candidates)?;
     let one = |sample: &Sample| sample.near <= front.far && sample.tube == front.tube;
     let surface: Vec<_> = candidates.iter().filter(|c| one(&c.sample)).collect();
     // The id is that of the greatest weight.
@@ -119,6 +150,7 @@ fn blend(
         radius: mean(&|c| c.sample.radius),
         normal: mean3(&|sample| sample.aligned_direction(front)).normalize_or_zero(),
         tube: front.tube,
+        subpixel: front.subpixel,
         colour: mean3(&|sample| sample.colour),
         coordinates: if finest {
             coordinates_at(own, &surface, front)

@@ -28,6 +28,7 @@ fn sample(near: f64, radius: f64) -> Sample {
         radius,
         normal: DVec3::NEG_Z,
         tube: false,
+        subpixel: false,
         colour: DVec3::ONE,
         coordinates: DVec2::ZERO,
         id: 0,
@@ -157,12 +158,32 @@ fn a_parent_is_the_mean_of_the_front_that_covers_it() {
 fn a_hole_is_filled_and_a_hidden_point_replaced() {
     for rules in [Rules::Paper, Rules::Robust] {
         let coarse = level(1, &[([16, 16], sample(2.0, 6.0)), ([15, 16], sample(2.0, 6.0))]);
-        let fine = level(0, &[([32, 32], sample(3.0, 0.8)), ([33, 32], sample(1.0, 0.8))]);
+        let fine = level(0, &[([32, 32], sample(3.0, 0.7)), ([33, 32], sample(1.0, 0.7))]);
         let finished = frame(rules).push(&coarse, &fine);
         let near = |x: i64| finished.at([x, 32]).map(|sample| sample.near);
         assert_eq!((near(31), near(32), near(33)), (Some(2.0), Some(2.0), Some(1.0)), "{rules:?}");
         assert_eq!(near(50), None);
     }
+}
+
+/// Points under a pixel cover pixels between them, and none beyond.
+#[test]
+fn points_on_all_sides_of_a_centre_cover_it() {
+    let point =
+        |x: f64, y: f64| Sample { displacement: DVec2::new(x, y), subpixel: true, ..sample(2.0, 1.0) };
+    let (top, none) = (level(1, &[]), frame(Rules::Robust));
+    let covered =
+        |known: &[([i64; 2], Sample)], at: [i64; 2]| none.push(&top, &level(0, known)).at(at).is_some();
+    // On one side, on two sides of the centre, and around a pixel without a point.
+    assert!(!covered(&[([32, 32], point(0.3, 0.2))], [32, 32]));
+    assert!(!covered(&[([32, 32], point(0.3, 0.2)), ([33, 33], point(0.0, 0.0))], [32, 32]));
+    assert!(covered(&[([32, 32], point(0.3, 0.2)), ([31, 32], point(0.4, -0.2))], [32, 32]));
+    let around = [([31, 32], point(0.3, 0.0)), ([33, 31], point(-0.3, 0.3)), ([33, 33], point(-0.3, -0.3))];
+    assert!(covered(&around, [32, 32]));
+    assert!(!covered(&around[1..], [32, 32]));
+    // A disc of a pixel covers its own and no other.
+    let disc = [([32, 32], Sample { subpixel: false, ..point(0.3, 0.2) })];
+    assert!(covered(&disc, [32, 32]) && !covered(&disc, [30, 32]));
 }
 
 #[test]

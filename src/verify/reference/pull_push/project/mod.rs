@@ -201,6 +201,7 @@ impl Reconstruction {
             radius: self.rays.to_pixels(disc.radius, distance),
             normal: disc.direction.normalize_or_zero(),
             tube,
+            subpixel: false,
             colour: disc.colour,
             coordinates: disc.coordinates,
             id: 0,

@@ -1,9 +1,12 @@
 //! A surfel covers the one pixel that holds its centre.
 
 use super::super::super::{Culled, Surfel};
-use super::{Point, Reconstruction, Vertex};
+use super::{Point, Reconstruction, Sample, Vertex};
 use crate::settings::Cull;
 use glam::DVec2;
+
+/// Least radius of a point's disc, px: smaller ones would not cover their own pixel's centre.
+const LEAST_RADIUS: f64 = 1.0;
 
 impl Reconstruction {
     pub(super) fn point(&self, surfel: &Surfel) -> Result<Point, Culled> {
@@ -28,16 +31,22 @@ impl Reconstruction {
         if corner.cmplt(DVec2::ZERO).any() || corner.cmpge(projector.size).any() {
             return Err(Culled::Outside);
         }
+        // A disc of the ellipse's area.
+        let radius = surfel.radius * surfel.aspect.sqrt();
+        let least = if self.is_paper() {
+            0.0
+        } else {
+            self.rays.to_length(LEAST_RADIUS, self.projector.distance(position))
+        };
         let disc = Vertex {
             position,
             // A disc seen from behind has the opposite normal.
             direction: if towards > 0.0 { -normal } else { normal },
-            // A disc of the ellipse's area.
-            radius: surfel.radius * surfel.aspect.sqrt(),
+            radius: radius.max(least),
             colour: surfel.colour.unwrap_or(self.albedo()),
             coordinates: DVec2::ZERO,
         };
         let at = [corner.x as i64, corner.y as i64];
-        Ok((at, self.sample(disc, screen, at, false)))
+        Ok((at, Sample { subpixel: radius < least, ..self.sample(disc, screen, at, false) }))
     }
 }
