@@ -22,7 +22,7 @@ pub fn parts(Model { surfels, primitives }: &Model) -> String {
     }
 }
 
-/// Part of the surfels above which the user is told that they are culled.
+/// Part of the surfels above which their culling is reported.
 const MANY: f64 = 0.9;
 
 /// A line for the user, if nearly all surfels face away from the camera and are therefore not drawn.

@@ -141,19 +141,19 @@ fn endless_device_files_are_refused() {
 }
 
 #[test]
-fn a_scan_seen_from_behind_is_culled_and_the_user_is_told() {
+fn a_scan_that_is_culled_from_behind_is_reported() {
     let program = Program::new();
     program.write("scan.ply", surfels(&["0 0 0 0 0 1 1", "1 0 0 0 0 1 1", "0 1 0 0 0 1 1", "1 1 0 0 0 1 1"]));
     let behind = "--eye 0.5,0.5,-4 --target 0.5,0.5,0";
-    for (options, is_told) in
+    for (options, is_reported) in
         [("--method pull-push", true), ("--cull back", true), ("", false), ("--cull none", false)]
     {
         let run =
             program.run(&format!("render scan.ply -o a.png --size 16x16 --reference {behind} {options}"));
-        let told = run.err.contains("100 % of the surfels face away") && run.err.contains("--cull none");
-        assert_eq!(told, is_told, "{options}: {}", run.err);
+        let reported = run.err.contains("100 % of the surfels face away") && run.err.contains("--cull none");
+        assert_eq!(reported, is_reported, "{options}: {}", run.err);
         let is_empty = program.png("a.png").pixels().all(|pixel| pixel[3] == 0);
-        assert_eq!(is_empty, is_told, "{options}");
+        assert_eq!(is_empty, is_reported, "{options}");
     }
     // The default camera sees the front.
     let run = program.run("render scan.ply -o a.png --size 16x16 --reference --method pull-push");
