@@ -49,7 +49,11 @@ fn render(program: &Program, i: usize, path: &Path) -> (bool, Duration) {
     std::os::unix::fs::symlink(path, program.path(&link)).unwrap();
     // What files are refused does not depend on the device, whose pipelines take most of the time of a small picture.
     let is_small = path.ancestors().any(|folder| folder.ends_with("ply_edge"));
-    let by = if is_small && !whole_matrix() { "--reference" } else { "" };
+    let by = match (whole_matrix(), is_small) {
+        (true, _) => "",
+        (false, true) => "--reference",
+        (false, false) => "--alpha mask --cull none --pixel-filter none",
+    };
     // Warnings may precede the error line.
     let command = format!("render {link} -o {png} --size 128x128 --quiet {by}");
     let run = program.run_with(&command, &[("RUST_LOG", "error")]);
