@@ -198,7 +198,7 @@ pub fn pixel_angle(from: &Viewpoint, rows: u32) -> f64 {
     2.0 * (0.5 * from.fov_y_deg.to_radians()).tan() / f64::from(rows)
 }
 
-/// The viewpoint of `surfel render` for a square picture.
+/// The viewpoint of `surfel render` for a square picture, if no normals have to be estimated.
 fn framing(extent: &Extent) -> Result<Viewpoint> {
     let Pose { eye, target, up, .. } = extent.pose(DVec3::Y, FOV, 1.0)?;
     Ok(Viewpoint { eye: eye.to_array(), target: target.to_array(), up: up.to_array(), fov_y_deg: FOV })
