@@ -9,6 +9,7 @@ use crate::host::Host;
 use crate::host::frame::{Frame, Kind, Way};
 use crate::host::native::Native;
 use crate::native_rig::PLAIN;
+use crate::support::methods;
 use crate::{FLOATS, ONE};
 use ash::vk;
 use std::backtrace::Backtrace;
@@ -88,7 +89,7 @@ fn few_calls_lead_from_a_renderer_to_a_dispatch() {
             Options { frames_in_flight: 1, rasterizer: rasterizer.into(), ..Options::new(frame.target()) };
         // SAFETY: the target is the frame's.
         let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
-        for method in Method::ALL {
+        for method in methods() {
             let settings = settings(method);
             host.run(|cmd| {
                 // SAFETY: recorded outside a render pass, and waited for.

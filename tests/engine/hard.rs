@@ -72,7 +72,8 @@ fn check(sweep: &Sweep, point: &SweepPoint) {
     let same =
         |other: &&SweepPoint| other.value == point.value && float32_limit(other) == float32_limit(point);
     let fails = sweep.points.iter().filter(same).any(|other| other.float64_error.failed_pixels > 0);
-    assert!(fails || !point.is_beyond_float32(), "{at}");
+    let by_all = sweep.points.iter().any(|point| point.implementation.method != Method::SPLATTING[0].name);
+    assert!(fails || !point.is_beyond_float32() || !by_all, "{at}");
     let within = a.colour <= bars.colour && a.normal <= bars.normal && a.depth <= bars.depth_relative;
     assert!(within || point.is_beyond_float32(), "{at}");
     let unusable = ["NaN", "infinity", "3e38"].iter().any(|value| point.note.contains(value));
@@ -82,13 +83,14 @@ fn check(sweep: &Sweep, point: &SweepPoint) {
 #[test]
 fn every_case_agrees_or_says_why_not() {
     let Some(device) = device(DeviceLimits::default()) else { return };
-    // Angles are where footprints differ: there other methods are held to more values than elsewhere.
+    // Angles are where footprints differ: there other methods are held to more values than elsewhere, or to some at all.
     let (angles, rest): (Vec<_>, Vec<_>) =
         names().into_iter().map(str::to_owned).partition(|name| name.starts_with("grazing"));
     // Attributes are a list, of which the ends say nothing of the middle.
     let (listed, rest): (Vec<_>, Vec<_>) = rest.into_iter().partition(|name| name == "attributes");
     let few = if_whole(usize::MAX, 2);
-    let sweeps = [(angles, few, if_whole(5, 2)), (rest, few, 2), (listed, usize::MAX, 2)];
+    let sweeps =
+        [(angles, few, if_whole(5, 2)), (rest, few, if_whole(2, 0)), (listed, usize::MAX, if_whole(2, 0))];
     let sweeps = sweeps.map(|(only, values, others)| {
         let options = Options { only, others, values, until: None };
         run(&device, &options, &()).unwrap()
@@ -109,7 +111,8 @@ fn every_case_agrees_or_says_why_not() {
                     sweep.points.iter().filter(own).filter(|point| point.implementation.variant == variant);
                 by.map(|point| point.value).collect::<Vec<_>>()
             });
-            let least = if method == Method::SPLATTING[0] { if_whole(7, 2) } else { 2 };
+            let of_others = if sweep.name.starts_with("grazing") { 2 } else { if_whole(2, 0) };
+            let least = if method == Method::SPLATTING[0] { if_whole(7, 2) } else { of_others };
             let ascending = values.is_sorted_by(|a, b| a < b);
             assert!(values.len() >= least && ascending, "{} {}: {values:?}", sweep.name, method.name);
             assert_eq!(values, others, "{} {}", sweep.name, method.name);

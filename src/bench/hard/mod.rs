@@ -38,7 +38,7 @@ use std::time::Instant;
 pub struct Options {
     /// Most values per parameter, from its first to its last; at least 2.
     pub values: usize,
-    /// Most values for methods other than the first, at least 2.
+    /// Most values for methods other than the first, at least 2; 0 for none.
     pub others: usize,
     /// Names of the cases; all if empty.
     pub only: Vec<String>,
@@ -76,6 +76,7 @@ impl Options {
     fn values(&self, case: &Case, method: usize) -> Vec<f64> {
         match method {
             0 => case.some(self.values),
+            _ if self.others == 0 => Vec::new(),
             _ => case.some(self.values.min(self.others)),
         }
     }
