@@ -1,5 +1,5 @@
 //! The default picture of points against the truth of their surface, relative to the mesh of the same points: the cameras of
-//! `tests/cameras.json`, 512² px, lit.
+//! `tests/cameras.json`, lit.
 
 use crate::program::{Program, say_skipped};
 use std::path::Path;
@@ -19,7 +19,7 @@ const MOST: [(&str, f64); 10] = [
 ];
 
 /// The truth's default filter is a Gaussian of 1 px². The mesh has a box's 16 rays.
-fn ratio(program: &Program, model: &serde_json::Value) -> f64 {
+fn ratio(program: &Program, model: &serde_json::Value, camera: usize, side: u32) -> f64 {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
     let path = |key: &str| match model[key].as_str().unwrap() {
         scene if scene.starts_with("scene:") => scene.to_owned(),
@@ -28,8 +28,8 @@ fn ratio(program: &Program, model: &serde_json::Value) -> f64 {
     let [points, surface] = ["points", "mesh"].map(path);
     // The exact surface of a scene, whose points are no mesh.
     let own = if points.starts_with("scene:") { &surface } else { &points };
-    program.write("camera.json", model["cameras"][0].to_string());
-    let view = "--size 512x512 --camera camera.json -q";
+    program.write("camera.json", model["cameras"][camera].to_string());
+    let view = format!("--size {side}x{side} --camera camera.json -q");
     program.run(&format!("truth {surface} -o truth.exr --filter gaussian {view}")).text();
     program.run(&format!("truth {own} -o mesh.exr --filter box --most-samples 16 {view}")).text();
     program.run(&format!("render {points} -o points.exr {view}")).text();
@@ -40,7 +40,8 @@ fn ratio(program: &Program, model: &serde_json::Value) -> f64 {
     rmse("points.exr") / rmse("mesh.exr")
 }
 
-fn check(test: &str, models: &[&str]) {
+/// Checks models from one camera at a size, against the bars of [`MOST`], or from other ones.
+fn check(test: &str, models: &[&str], others: Option<f64>) {
     let Some(program) = Program::with_device(test) else { return };
     let file =
         std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cameras.json")).unwrap();
@@ -57,19 +58,36 @@ fn check(test: &str, models: &[&str]) {
             say_skipped(test, &format!("there is no {}", data.display()));
             continue;
         }
-        let found = ratio(&program, model);
-        println!("{name}: {found:.2}");
-        assert!(found <= most, "{name}: {found:.3}, above {most}");
+        let Some(bar) = others else {
+            let found = ratio(&program, model, 0, 512);
+            println!("{name}: {found:.2}");
+            assert!(found <= most, "{name}: {found:.3}, above {most}");
+            continue;
+        };
+        for side in [256, 512, 1024] {
+            let found = [1, 2, 3, 4].map(|camera| ratio(&program, model, camera, side));
+            println!("{name}, {side}²: {found:.2?}");
+            assert!(found.iter().all(|found| *found <= bar), "{name}, {side}²: {found:.3?}, above {bar}");
+        }
     }
 }
 
 #[test]
 fn points_of_a_decimated_scan_are_as_near_to_the_truth_as_their_mesh() {
-    check("points_of_a_decimated_scan_are_as_near_to_the_truth_as_their_mesh", &["bun_zipper_res2"]);
+    check("points_of_a_decimated_scan_are_as_near_to_the_truth_as_their_mesh", &["bun_zipper_res2"], None);
 }
 
 #[test]
 #[ignore = "takes long: tools/test --all"]
 fn points_of_every_model_are_as_near_to_the_truth_as_their_mesh() {
-    check("points_of_every_model_are_as_near_to_the_truth_as_their_mesh", &MOST.map(|(name, _)| name));
+    check("points_of_every_model_are_as_near_to_the_truth_as_their_mesh", &MOST.map(|(name, _)| name), None);
+}
+
+/// Of the models that are as near as their mesh from the first camera, or nearly. The anchor of the bumpy sphere is the exact surface, which knows
+/// the colours between the points, so that the closest camera has it at 1.53.
+#[test]
+#[ignore = "takes long: tools/test --all"]
+fn points_are_as_near_from_other_cameras_at_other_sizes() {
+    let models = ["dragon_vrip_res2", "bun_zipper_res2", "igea", "bun_zipper", "screwdriver", "feline_50k"];
+    check("points_are_as_near_from_other_cameras_at_other_sizes", &models, Some(1.35));
 }

@@ -177,6 +177,8 @@ fn points_on_all_sides_of_a_centre_cover_it() {
     // On one side, on two sides of the centre, and around a pixel without a point.
     assert!(!covered(&[([32, 32], point(0.3, 0.2))], [32, 32]));
     assert!(!covered(&[([32, 32], point(0.3, 0.2)), ([33, 33], point(0.0, 0.0))], [32, 32]));
+    // On both sides along x and y, and on one along a diagonal.
+    assert!(!covered(&[([32, 32], point(0.4, -0.1)), ([32, 33], point(-0.1, -0.4))], [32, 32]));
     assert!(covered(&[([32, 32], point(0.3, 0.2)), ([31, 32], point(0.4, -0.2))], [32, 32]));
     let around = [([31, 32], point(0.3, 0.0)), ([33, 31], point(-0.3, 0.3)), ([33, 33], point(-0.3, -0.3))];
     assert!(covered(&around, [32, 32]));
