@@ -6,7 +6,7 @@ layout(constant_id = 65) const bool BOX_WEIGHTS = false; // of discs, by the pub
 
 // Widening of a disc's variance on level 0, px²; four times as much per level. Narrower discs leave holes.
 const float WIDENING = 0.25;
-// On level 0, further widening of discs of a radius of one pixel, px²; none from two pixels on. Points are sparse there.
+// On level 0, further widening of discs of a radius of one pixel, px²; none from two pixels on. Their points leave some pixels empty.
 const float WIDENING_OF_SMALL = 0.15;
 // Negated ln of the weight at a disc's rim: σ is a third of the radius; half of it as published.
 const float RIM = 4.5, PAPER_RIM = 2.0;
@@ -151,8 +151,8 @@ Sample reconstructed(ivec2 pixel) {
 #define ADD(K) if (K < CANDIDATES) add(samples[K], weights[K], centre, sums);
     WEIGHT(0) WEIGHT(1) WEIGHT(2) WEIGHT(3) WEIGHT(4) WEIGHT(5) WEIGHT(6) WEIGHT(7) WEIGHT(8) WEIGHT(9) WEIGHT(10) WEIGHT(11) WEIGHT(12)
     ADD(0) ADD(1) ADD(2) ADD(3) ADD(4) ADD(5) ADD(6) ADD(7) ADD(8) ADD(9) ADD(10) ADD(11) ADD(12)
-    // Discs that are widened to a pixel reach beyond the outline: there, a pixel is covered if points are on all sides of its centre, of whatever
-    // surface. Steep surfaces are dense, so that none of them has a hole.
+    // Discs that are widened to a pixel reach beyond the outline: there, a pixel is covered if points are on all sides of its centre. They may be
+    // of any surface: on steep ones, the intervals of neighbouring points do not meet.
     if (!PAPER && pass.level == 0 && sums.front.subpixel) {
         Surroundings around = Surroundings(vec4(1e38), vec4(-1e38));
         surround(samples[4], around);

@@ -8,7 +8,8 @@ use glam::{DMat2, DVec2, DVec3};
 /// Widening of a disc's variance on level 0, px²; four times as much per level. Narrower discs leave holes.
 const WIDENING: f64 = 0.25;
 
-/// On level 0, further widening of discs of a radius of one pixel, px²; none from two pixels on. Points are sparse there.
+/// On level 0, further widening of discs of a radius of one pixel, px²; none from two pixels on. Their points leave some
+/// pixels empty.
 const WIDENING_OF_SMALL: f64 = 0.15;
 
 /// Negated `ln` of the weight at a disc's rim: σ is a third of the radius.
@@ -59,7 +60,7 @@ pub fn pass(
         let shown = pulled.level > 0 || beside[4].is_some();
         let candidates: Vec<_> = above.into_iter().chain(beside).flatten().collect();
         // Discs that are widened to a pixel reach beyond the outline: there, a pixel is covered if points are on all sides
-        // of its centre, of whatever surface. Steep surfaces are dense, so that none of them has a hole.
+        // of its centre. They may be of any surface: on steep ones, the intervals of neighbouring points do not meet.
         let is_subpixel = front(&candidates).is_some_and(|front| front.subpixel);
         if pulled.level == 0 && is_subpixel && !is_surrounded(pulled, at, decisions) {
             return None;
