@@ -2,8 +2,17 @@
 #version 450
 #pragma variant CLIP_LINES VERTEX FRAGMENT
 #pragma variant SUBGROUPS COMPUTE
+#pragma variant BEHIND FRAGMENT
+#pragma variant BEHIND_CLIP_LINES FRAGMENT
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
 #include "lib/tile_pass.glsl"
+
+// Of the surface behind, for pass behind.
+#ifdef BEHIND_CLIP_LINES
+#define BEHIND
+#define CLIP_LINES
+#endif
 
 #define VERTICES 3
 #ifdef COMPUTE
@@ -91,6 +100,10 @@ layout(location = 6) flat in vec3 attribute1;
 layout(location = 7) flat in vec4 corners;
 layout(location = 8) flat in vec4 square;
 
+#ifdef BEHIND
+layout(set = 1, binding = 9) uniform texture2D visibility_image;
+#endif
+
 layout(location = 0) out vec4 sum0;
 layout(location = 1) out vec4 sum1;
 
@@ -98,6 +111,9 @@ void main() {
     vec2 m;
     float key, rank;
     evaluate_fragment(m, key, rank);
+#ifdef BEHIND
+    if (ranked(key, rank) >= texelFetch(visibility_image, ivec2(gl_FragCoord.xy), 0).r) discard;
+#endif
     float weight = OVERLAP ? 1.0 : height * kernel(dot(m, m));
     if (CORNERS && !OVERLAP) weight *= bilinear_weight(corners, mat2(square.xy, square.zw), m);
     gl_FragDepth = ranked(key, rank);

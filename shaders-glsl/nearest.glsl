@@ -115,6 +115,9 @@ void main() {
     vec2 m;
     float key, rank;
     evaluate_fragment(m, key, rank);
+#ifdef COVERAGE
+    add_fragment_coverage();
+#endif
     gl_FragDepth = ranked(min(key, plane_lo_disc.w), rank);
     sum0 = vec4(1.0, attribute0);
     sum1 = vec4(SUM_DEPTH ? frame.key_gain * key : 0.0, attribute1);

@@ -1,11 +1,18 @@
-// Open: lists the tiles that sides has opened, for the second dispatch of surface.
+// Open: lists the marked tiles for a dispatch over these: those that sides has opened, or those with edges.
 #version 450
+#pragma variant EDGES COMPUTE
 #extension GL_GOOGLE_include_directive : require
 
 #ifdef COMPUTE
 
 #include "lib/frame.glsl"
+#ifdef EDGES
+#include "lib/edge_tiles.glsl"
+#define LIST edges
+#else
 #include "lib/open_tiles.glsl"
+#define LIST open
+#endif
 
 layout(local_size_x = 64) in;
 
@@ -14,13 +21,13 @@ void main() {
     uvec2 counts = tile_counts();
     uint all_tiles = counts.x * counts.y, rows = (all_tiles + MOST_COLUMNS - 1) / MOST_COLUMNS;
     if (i == 0) {
-        open.rows = rows;
-        open.layers = 1;
+        LIST.rows = rows;
+        LIST.layers = 1;
     }
-    if (i >= all_tiles || open.all == 0 && open.tiles[i].key != OPEN) return;
-    uint place = atomicAdd(open.listed_count, 1);
-    atomicMax(open.columns, place / rows + 1);
-    open.tiles[place].listed = i % counts.x | i / counts.x << 16;
+    if (i >= all_tiles || LIST.all == 0 && LIST.tiles[i].key != MARKED) return;
+    uint place = atomicAdd(LIST.listed_count, 1);
+    atomicMax(LIST.columns, place / rows + 1);
+    LIST.tiles[place].listed = i % counts.x | i / counts.x << 16;
 }
 
 #endif

@@ -48,7 +48,7 @@ void open_tiles_of(Box box) {
     for (uint k = 0; k < size.x * size.y; k++) {
         uvec2 tile = low + uvec2(k % size.x, k / size.x);
         uint i = tile_index(tile);
-        if (nearest_key(box) > uintBitsToFloat(open.tiles[i].key)) open.tiles[i].key = OPEN;
+        if (nearest_key(box) > uintBitsToFloat(open.tiles[i].key)) open.tiles[i].key = MARKED;
     }
 }
 

@@ -1,5 +1,5 @@
 // Surface: runs visibility, attribute and normalize per tile in one dispatch, without intermediate targets (zwicker2004 §6). Frames that
-// cull some splats that face away first draw those that face the eye; a second dispatch draws open tiles again.
+// cull some splats that face away first draw those that face the eye; a second dispatch draws open tiles again. MIXED: pass behind follows.
 #version 450
 #pragma variant SUBGROUPS COMPUTE
 #extension GL_GOOGLE_include_directive : require
@@ -17,6 +17,9 @@
 #include "lib/tile_coverage.glsl"
 #include "lib/tile_attribute.glsl"
 #include "lib/open_tiles.glsl"
+#include "lib/edge_tiles.glsl"
+
+layout(set = 1, binding = 5, std430) buffer Coverage { uint coverage[]; };
 
 void load_depths(uvec2 origin) {
     for (uint r = 0; r < ROWS; r++) {
@@ -32,20 +35,34 @@ void store_depths(uvec2 origin) {
     }
 }
 
+// Stores the samples of each pixel, those of the nearest surface in the upper bits, and whether others show the surface behind.
+void store_edges(uvec2 origin) {
+    bool has_edges = false;
+    for (uint r = 0; r < ROWS; r++) {
+        uvec2 pixel = origin + lane_pixel(r);
+        if (!is_in_viewport(pixel)) continue;
+        coverage[pixel_index(ivec2(pixel))] = coverage_masks[r] | nearest_masks[r] << SAMPLES;
+        has_edges = has_edges || coverage_masks[r] != nearest_masks[r];
+    }
+    uint with_edges = workgroup_ballot(has_edges);
+    if (lane == 0 && is_in_viewport(origin)) edges.tiles[tile_index(origin / TILE)].key = with_edges != 0 ? MARKED : 0;
+}
+
 // Stores the κ behind which splats do not change the tile: 0 if it has empty pixels, or uncovered samples, which hidden splats cover, too.
 void store_key(uvec2 origin) {
-    bool is_covered = !COVERAGE || coverage_cull_key > 0.0;
+    bool is_covered = !COVERAGE || incomplete_pixels == uvec2(0);
     if (lane == 0) open.tiles[tile_index(origin / TILE)].key = is_covered ? floatBitsToUint(visibility_cull_key) : 0;
 }
 
 void main() {
     load_frame();
-    uvec2 origin = HAS_FRONTS ? listed_origin() : tile_origin();
+    uvec2 origin = HAS_FRONTS ? LISTED_ORIGIN(open) : tile_origin();
     if (has_depths()) load_depths(origin);
     compute_visibility(origin);
-    if (FRONTS) store_depths(origin);
+    if (FRONTS || MIXED) store_depths(origin);
     if (COVERAGE) compute_coverage(origin);
     if (FRONTS) store_key(origin);
+    if (MIXED) store_edges(origin);
     sum_attributes(origin);
     report_incomplete();
     for (uint r = 0; r < ROWS; r++) {

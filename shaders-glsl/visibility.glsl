@@ -73,6 +73,9 @@ void main() {
     vec2 m;
     float key, rank;
     evaluate_fragment(m, key, rank);
+#ifdef COVERAGE
+    add_fragment_coverage();
+#endif
     gl_FragDepth = ranked(visibility_key(key, plane_lo_disc.w, plane_epsilon.w), rank);
 }
 

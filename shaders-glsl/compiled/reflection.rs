@@ -80,6 +80,86 @@ pub static ATTRIBUTE_SUBGROUPS_COMPUTE: Module = Module {
     push: size_of::<layout::Hierarchy>() as u32,
 };
 
+/// The fragment stage of `shaders-glsl/attribute.glsl`.
+pub static ATTRIBUTE_BEHIND_FRAGMENT: Module = Module {
+    name: "attribute_behind_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("attribute_behind_fragment.spv"),
+    constants: &[0, 4, 15, 16, 19, 27, 70],
+    resources: &[(&resource::FRAME, false), (&resource::VISIBILITY_IMAGE, false)],
+    push: 0,
+};
+
+/// The fragment stage of `shaders-glsl/attribute.glsl`.
+pub static ATTRIBUTE_BEHIND_CLIP_LINES_FRAGMENT: Module = Module {
+    name: "attribute_behind_clip_lines_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("attribute_behind_clip_lines_fragment.spv"),
+    constants: &[0, 4, 15, 16, 19, 23, 24, 27, 70],
+    resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false), (&resource::VISIBILITY_IMAGE, false)],
+    push: 0,
+};
+
+/// The vertex stage of `shaders-glsl/behind.glsl`.
+pub static BEHIND_VERTEX: Module = Module {
+    name: "behind_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("behind_vertex.spv"),
+    constants: &[0, 15, 16, 23, 37, 67, 70],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
+    push: size_of::<layout::Chunk>() as u32,
+};
+
+/// The fragment stage of `shaders-glsl/behind.glsl`.
+pub static BEHIND_FRAGMENT: Module = Module {
+    name: "behind_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("behind_fragment.spv"),
+    constants: &[0, 15, 16, 23, 24, 70],
+    resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false), (&resource::COVERAGE, true), (&resource::VISIBILITY_IMAGE, false)],
+    push: 0,
+};
+
+/// The compute stage of `shaders-glsl/behind.glsl`.
+pub static BEHIND_COMPUTE: Module = Module {
+    name: "behind_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("behind_compute.spv"),
+    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 66, 67, 69, 70, 72, 73],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::IMAGE_OUTPUT, true), (&resource::COVERAGE, false), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::EDGE_TILES, true)],
+    push: size_of::<layout::Hierarchy>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/behind.glsl`.
+pub static BEHIND_SUBGROUPS_COMPUTE: Module = Module {
+    name: "behind_subgroups_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("behind_subgroups_compute.spv"),
+    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 66, 67, 69, 70, 72, 73],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::IMAGE_OUTPUT, true), (&resource::COVERAGE, false), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::CLIP_TEXELS, false), (&resource::EDGE_TILES, true)],
+    push: size_of::<layout::Hierarchy>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/behind.glsl`.
+pub static BEHIND_MIX_COMPUTE: Module = Module {
+    name: "behind_mix_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("behind_mix_compute.spv"),
+    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 66],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::COVERAGE, false), (&resource::SUMS0_IMAGE, false), (&resource::SUMS1_IMAGE, false), (&resource::BEHIND_IMAGE, false)],
+    push: 0,
+};
+
+/// The fragment stage of `shaders-glsl/behind.glsl`.
+pub static BEHIND_NEAREST_SAMPLES_FRAGMENT: Module = Module {
+    name: "behind_nearest_samples_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("behind_nearest_samples_fragment.spv"),
+    constants: &[0, 15, 16, 23, 24, 70],
+    resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false), (&resource::COVERAGE, true), (&resource::VISIBILITY_IMAGE, false)],
+    push: 0,
+};
+
 /// The compute stage of `shaders-glsl/boxes.glsl`.
 pub static BOXES_COMPUTE: Module = Module {
     name: "boxes_compute",
@@ -325,7 +405,7 @@ pub static NEAREST_COMPUTE: Module = Module {
     name: "nearest_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 69, 70],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 69, 70, 72],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -375,7 +455,7 @@ pub static NEAREST_SUBGROUPS_COMPUTE: Module = Module {
     name: "nearest_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 69, 70],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 69, 70, 72],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -385,7 +465,7 @@ pub static NEAREST_SLICES_COMPUTE: Module = Module {
     name: "nearest_slices_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_slices_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 69, 70],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 69, 70, 72],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::SUMS0, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -395,7 +475,7 @@ pub static NEAREST_SUBGROUPS_SLICES_COMPUTE: Module = Module {
     name: "nearest_subgroups_slices_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_subgroups_slices_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 69, 70],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 69, 70, 72],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::SUMS0, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -487,6 +567,16 @@ pub static OPEN_COMPUTE: Module = Module {
     spirv: spirv!("open_compute.spv"),
     constants: &[],
     resources: &[(&resource::FRAME, false), (&resource::OPEN_TILES, true)],
+    push: 0,
+};
+
+/// The compute stage of `shaders-glsl/open.glsl`.
+pub static OPEN_EDGES_COMPUTE: Module = Module {
+    name: "open_edges_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("open_edges_compute.spv"),
+    constants: &[],
+    resources: &[(&resource::FRAME, false), (&resource::EDGE_TILES, true)],
     push: 0,
 };
 
@@ -715,8 +805,8 @@ pub static SURFACE_COMPUTE: Module = Module {
     name: "surface_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 66, 67, 68, 69, 70],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::OPEN_TILES, true)],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 66, 67, 68, 69, 70, 72],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::OPEN_TILES, true), (&resource::EDGE_TILES, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
 
@@ -725,8 +815,8 @@ pub static SURFACE_SUBGROUPS_COMPUTE: Module = Module {
     name: "surface_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 66, 67, 68, 69, 70],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false), (&resource::OPEN_TILES, true)],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 66, 67, 68, 69, 70, 72],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false), (&resource::OPEN_TILES, true), (&resource::EDGE_TILES, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
 
@@ -755,7 +845,7 @@ pub static VISIBILITY_COMPUTE: Module = Module {
     name: "visibility_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("visibility_compute.spv"),
-    constants: &[0, 15, 16, 23, 24, 31, 44, 47, 67, 68, 69, 70],
+    constants: &[0, 15, 16, 23, 24, 31, 44, 47, 67, 68, 69, 70, 72],
     resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_CLIPS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -805,7 +895,7 @@ pub static VISIBILITY_SUBGROUPS_COMPUTE: Module = Module {
     name: "visibility_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("visibility_subgroups_compute.spv"),
-    constants: &[0, 15, 16, 23, 24, 31, 44, 47, 67, 68, 69, 70],
+    constants: &[0, 15, 16, 23, 24, 31, 44, 47, 67, 68, 69, 70, 72],
     resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -854,7 +944,7 @@ pub mod constant {
     pub const ELLIPSE_STRIDE: u32 = 60;
     /// `ENCODE`, first in `shaders-glsl/composite.glsl`.
     pub const ENCODE: u32 = 41;
-    /// `FILTER_RADIUS`, first in `shaders-glsl/filter.glsl`.
+    /// `FILTER_RADIUS`, first in `shaders-glsl/behind.glsl`.
     pub const FILTER_RADIUS: u32 = 66;
     /// `FOOTPRINT`, first in `shaders-glsl/attribute.glsl`.
     pub const FOOTPRINT: u32 = 15;
@@ -878,6 +968,8 @@ pub mod constant {
     pub const LIGHTS: u32 = 7;
     /// `MATERIALS`, first in `shaders-glsl/shade.glsl`.
     pub const MATERIALS: u32 = 25;
+    /// `MIXED`, first in `shaders-glsl/attribute.glsl`.
+    pub const MIXED: u32 = 72;
     /// `MOVED`, first in `shaders-glsl/footprint.glsl`.
     pub const MOVED: u32 = 21;
     /// `NORMALIZATION`, first in `shaders-glsl/attribute.glsl`.
@@ -890,9 +982,9 @@ pub mod constant {
     pub const NORMAL_STRIDE: u32 = 53;
     /// `OPENS_TILES`, first in `shaders-glsl/sides.glsl`.
     pub const OPENS_TILES: u32 = 71;
-    /// `OUT_DEPTH`, first in `shaders-glsl/nearest.glsl`.
+    /// `OUT_DEPTH`, first in `shaders-glsl/behind.glsl`.
     pub const OUT_DEPTH: u32 = 10;
-    /// `OUT_NORMAL`, first in `shaders-glsl/nearest.glsl`.
+    /// `OUT_NORMAL`, first in `shaders-glsl/behind.glsl`.
     pub const OUT_NORMAL: u32 = 9;
     /// `OVERLAP`, first in `shaders-glsl/attribute.glsl`.
     pub const OVERLAP: u32 = 19;
@@ -914,10 +1006,12 @@ pub mod constant {
     pub const RECONSTRUCT: u32 = 48;
     /// `SHADE`, first in `shaders-glsl/attribute.glsl`.
     pub const SHADE: u32 = 20;
-    /// `SHADING`, first in `shaders-glsl/colour_map.glsl`.
+    /// `SHADING`, first in `shaders-glsl/behind.glsl`.
     pub const SHADING: u32 = 6;
     /// `SLICED`, first in `shaders-glsl/attribute.glsl`.
     pub const SLICED: u32 = 47;
+    /// `SPLIT`, first in `shaders-glsl/behind.glsl`.
+    pub const SPLIT: u32 = 73;
     /// `STORED_COLOURS`, first in `shaders-glsl/attribute.glsl`.
     pub const STORED_COLOURS: u32 = 62;
     /// `SUM_COLOURS`, first in `shaders-glsl/attribute.glsl`.
@@ -999,13 +1093,22 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `Coverage`, first in `shaders-glsl/nearest.glsl`.
+    /// `Coverage`, first in `shaders-glsl/behind.glsl`.
     pub static COVERAGE: Resource = Resource {
         name: "Coverage",
         set: 1,
         binding: 5,
         kind: DescriptorType::STORAGE_BUFFER,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
+    /// `EdgeTiles`, first in `shaders-glsl/behind.glsl`.
+    pub static EDGE_TILES: Resource = Resource {
+        name: "EdgeTiles",
+        set: 1,
+        binding: 25,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
     /// `Elements`, first in `shaders-glsl/fetch.glsl`.
@@ -1332,6 +1435,15 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
+    /// `behind_image`, first in `shaders-glsl/behind.glsl`.
+    pub static BEHIND_IMAGE: Resource = Resource {
+        name: "behind_image",
+        set: 1,
+        binding: 26,
+        kind: DescriptorType::SAMPLED_IMAGE,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
     /// `box_texels`, first in `shaders-glsl/attribute.glsl`.
     pub static BOX_TEXELS: Resource = Resource {
         name: "box_texels",
@@ -1494,7 +1606,7 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `image_output`, first in `shaders-glsl/filter.glsl`.
+    /// `image_output`, first in `shaders-glsl/behind.glsl`.
     pub static IMAGE_OUTPUT: Resource = Resource {
         name: "image_output",
         set: 1,
@@ -1566,13 +1678,13 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `sums0_image`, first in `shaders-glsl/normalize.glsl`.
+    /// `sums0_image`, first in `shaders-glsl/behind.glsl`.
     pub static SUMS0_IMAGE: Resource = Resource {
         name: "sums0_image",
         set: 1,
         binding: 10,
         kind: DescriptorType::SAMPLED_IMAGE,
-        stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::FRAGMENT.as_raw()),
     };
 
     /// `sums0_input`, first in `shaders-glsl/normalize.glsl`.
@@ -1584,13 +1696,13 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
     };
 
-    /// `sums1_image`, first in `shaders-glsl/normalize.glsl`.
+    /// `sums1_image`, first in `shaders-glsl/behind.glsl`.
     pub static SUMS1_IMAGE: Resource = Resource {
         name: "sums1_image",
         set: 1,
         binding: 11,
         kind: DescriptorType::SAMPLED_IMAGE,
-        stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::FRAGMENT.as_raw()),
     };
 
     /// `sums1_input`, first in `shaders-glsl/normalize.glsl`.
@@ -1647,7 +1759,7 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `visibility_image`, first in `shaders-glsl/normalize.glsl`.
+    /// `visibility_image`, first in `shaders-glsl/attribute.glsl`.
     pub static VISIBILITY_IMAGE: Resource = Resource {
         name: "visibility_image",
         set: 1,
@@ -1760,6 +1872,28 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Counts, culled) == 0);
     const _: () = assert!(std::mem::offset_of!(Counts, in_clusters) == 20);
     const _: () = assert!(std::mem::size_of::<Counts>() == 24);
+
+    /// `EdgeTiles`, 20 bytes, first in `shaders-glsl/behind.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct EdgeTiles {
+        /// Byte 0.
+        pub columns: u32,
+        /// Byte 4.
+        pub rows: u32,
+        /// Byte 8.
+        pub layers: u32,
+        /// Byte 12.
+        pub listed_count: u32,
+        /// Byte 16.
+        pub all: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(EdgeTiles, columns) == 0);
+    const _: () = assert!(std::mem::offset_of!(EdgeTiles, rows) == 4);
+    const _: () = assert!(std::mem::offset_of!(EdgeTiles, layers) == 8);
+    const _: () = assert!(std::mem::offset_of!(EdgeTiles, listed_count) == 12);
+    const _: () = assert!(std::mem::offset_of!(EdgeTiles, all) == 16);
+    const _: () = assert!(std::mem::size_of::<EdgeTiles>() == 20);
 
     /// `FillOptions`, 16 bytes, first in `shaders-glsl/fill.glsl`.
     #[repr(C)]
@@ -1906,6 +2040,19 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Level, fronts) == 24);
     const _: () = assert!(std::mem::size_of::<Level>() == 28);
 
+    /// `ListedTile`, 8 bytes, first in `shaders-glsl/behind.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct ListedTile {
+        /// Byte 0.
+        pub key: u32,
+        /// Byte 4.
+        pub listed: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(ListedTile, key) == 0);
+    const _: () = assert!(std::mem::offset_of!(ListedTile, listed) == 4);
+    const _: () = assert!(std::mem::size_of::<ListedTile>() == 8);
+
     /// `Materials`, 4 bytes, first in `shaders-glsl/shade.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -1915,19 +2062,6 @@ pub mod layout {
     }
     const _: () = assert!(std::mem::offset_of!(Materials, count) == 0);
     const _: () = assert!(std::mem::size_of::<Materials>() == 4);
-
-    /// `OpenTile`, 8 bytes, first in `shaders-glsl/open.glsl`.
-    #[repr(C)]
-    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-    pub struct OpenTile {
-        /// Byte 0.
-        pub key: u32,
-        /// Byte 4.
-        pub listed: u32,
-    }
-    const _: () = assert!(std::mem::offset_of!(OpenTile, key) == 0);
-    const _: () = assert!(std::mem::offset_of!(OpenTile, listed) == 4);
-    const _: () = assert!(std::mem::size_of::<OpenTile>() == 8);
 
     /// `OpenTiles`, 20 bytes, first in `shaders-glsl/open.glsl`.
     #[repr(C)]

@@ -3,8 +3,6 @@
 
 #include "lib/lattice.glsl"
 
-const uint ALL_SAMPLES = (1u << SAMPLES) - 1;
-
 // Least variance of the solid ellipse, px²: an edge-on disc has none.
 const float LEAST_SOLID = 1e-12;
 // Overlap of discs on both sides of an edge, px: more than the rounding error between them.
@@ -54,12 +52,4 @@ uint coverage_mask(Ellipse solid, float least_key, vec2 pixel) {
 
 #ifdef FRAGMENT
 layout(set = 1, binding = 5, std430) buffer Coverage { uint coverage[]; }; // the 16 samples of each pixel, one bit each
-
-// Adds the samples that a splat covers at a pixel centre where it has a fragment.
-void add_coverage(uint index, Ellipse solid, float least_key, vec2 pixel) {
-    uint covered = coverage[index];
-    if (covered == ALL_SAMPLES) return;
-    uint mask = coverage_mask(solid, least_key, pixel);
-    if ((mask & ~covered) != 0) atomicOr(coverage[index], mask);
-}
 #endif

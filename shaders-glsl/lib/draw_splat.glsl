@@ -96,6 +96,30 @@ layout(location = 10) flat in vec4 solid_whitening;
 layout(depth_less) out float gl_FragDepth;
 #endif
 
+#ifdef COVERAGE
+// Solid ellipse of the fragment's splat, once evaluate_fragment has run.
+Ellipse solid;
+
+// Place of the fragment's pixel in buffers.
+uint fragment_index() {
+    uvec2 pixel = uvec2(gl_FragCoord.xy - frame.origin);
+    return pixel.y * uint(frame.viewport.x) + pixel.x;
+}
+
+// Mask of the samples that the splat covers at the fragment's pixel.
+uint fragment_mask() {
+    return coverage_mask(solid, least_keys.y, gl_FragCoord.xy - frame.origin);
+}
+
+// Adds the samples that the splat covers at the fragment's pixel.
+void add_fragment_coverage() {
+    uint index = fragment_index(), covered = coverage[index];
+    if (covered == ALL_SAMPLES) return;
+    uint mask = fragment_mask();
+    if ((mask & ~covered) != 0) atomicOr(coverage[index], mask);
+}
+#endif
+
 // Evaluates splat_fragment; discards the fragment if it is outside.
 void evaluate_fragment(out vec2 m, out float key, out float rank) {
     float key_centre = centre_key(plane_epsilon.xyz, plane_lo_disc.xyz, anchor_offset.zw);
@@ -105,9 +129,8 @@ void evaluate_fragment(out vec2 m, out float key, out float rank) {
     vec2 centre = gl_FragCoord.xy - frame.origin;
     if (!splat_fragment(ellipse, centre, m, key, rank)) discard;
 #ifdef COVERAGE
-    uvec2 pixel = uvec2(centre);
     ellipse.whitening = solid_whitening;
-    add_coverage(pixel.y * uint(frame.viewport.x) + pixel.x, ellipse, least_keys.y, centre);
+    solid = ellipse;
 #endif
 }
 

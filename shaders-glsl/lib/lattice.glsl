@@ -4,6 +4,7 @@
 #define LIB_LATTICE
 
 const uint SAMPLES = 16;
+const uint ALL_SAMPLES = (1u << SAMPLES) - 1;
 
 // Sample k relative to the pixel's centre, px: a rank-1 lattice with one sample in each of 16 rows and columns, at least 0.19 px apart.
 vec2 sample_position(uint k) {

@@ -1,9 +1,12 @@
-// Output images of compute passes.
+// Output images of compute passes; the picture is write-only unless the including pass defines another access.
 
 layout(constant_id = 9) const bool OUT_NORMAL = false;
 layout(constant_id = 10) const bool OUT_DEPTH = false;
 
-layout(set = 1, binding = 3, rgba32f) writeonly uniform image2D image_output;
+#ifndef IMAGE_ACCESS
+#define IMAGE_ACCESS writeonly
+#endif
+layout(set = 1, binding = 3, rgba32f) IMAGE_ACCESS uniform image2D image_output;
 layout(set = 1, binding = 19, rgba32f) writeonly uniform image2D normal_output;
 layout(set = 1, binding = 20, r32f) writeonly uniform image2D depth_output;
 

@@ -22,6 +22,7 @@ layout(push_constant) uniform Hierarchy {
 layout(constant_id = 31) const bool COVERAGE = false; // α is the covered part of a pixel
 layout(constant_id = 47) const bool SLICED = false;
 layout(constant_id = 68) const bool CULL_AUTO = false; // pass sides has culled some splats that face away
+layout(constant_id = 72) const bool MIXED = false; // pixels at edges show the surface behind, too
 layout(constant_id = 69) const bool FRONTS = false; // only splats that face the eye: the pass before sides
 
 // Whether this dispatch resumes the state of the previous slice, and whether no further slice follows.
@@ -200,6 +201,13 @@ const uint UNROLLED = 2;
 
 // Depth keys of the lane's pixels, see lib/tile_visibility.glsl.
 float depths[ROWS];
+
+// Least depth key of the tile's visible pixels.
+float least_depth() {
+    float least = 1e30;
+    for (uint r = 0; r < ROWS; r++) least = depths[r] > 0.0 ? min(least, depths[r]) : least;
+    return workgroup_min(least);
+}
 
 // Index of a splat's screen clip in the frame, or NO_CLIP.
 uint clip_of(uint id) {

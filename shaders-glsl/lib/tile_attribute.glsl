@@ -18,6 +18,9 @@ void add_attributes(TileSplat splat, vec4 attribute0, vec3 attribute1, vec4 corn
         bool has_fragment = tile_fragment(splat, vec2(lane_pixel(r)), m, key, rank) && is_splat;
         // Pixels without a visible surface get no attributes: this footprint is wider.
         has_fragment = has_fragment && depths[r] > 0.0 && ranked(key, rank) >= depths[r];
+#ifdef BEHIND
+        has_fragment = has_fragment && ranked(key, rank) < nearest_depths[r];
+#endif
         float weight = attribute0.w;
         if (!OVERLAP) weight *= kernel(dot(m, m));
         if (FRAME_CORNERS && !OVERLAP) weight *= bilinear_weight(corners, axes, m);
@@ -59,13 +62,12 @@ void add_attribute_batch(uint count, uint id, uvec2 origin) {
 
 // Sums attributes of the tile; `depths` are those of visibility.
 void sum_attributes(uvec2 origin) {
-    float least = 1e30;
     for (uint r = 0; r < ROWS; r++) {
         if (!is_resumed()) tile_sums0[r] = tile_sums1[r] = vec4(0.0);
-        if (depths[r] > 0.0 && is_in_viewport(origin + lane_pixel(r))) least = min(least, depths[r]);
+        depths[r] = is_in_viewport(origin + lane_pixel(r)) ? depths[r] : 0.0;
     }
     // Slightly farther, so that equal depths count.
-    attribute_cull_key = 0.999999 * workgroup_min(least);
+    attribute_cull_key = 0.999999 * least_depth();
     WORKGROUP_BARRIER();
     bool all_recorded = visited_count <= MOST_VISITED;
     uint first = all_recorded ? 0 : SCRATCH, end = all_recorded ? visited_count : SCRATCH;

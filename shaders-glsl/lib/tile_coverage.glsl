@@ -5,14 +5,17 @@
 
 #include "lib/coverage.glsl"
 
-// Of each of the lane's pixels, as other stages own them: a bit per sample.
-uint coverage_masks[ROWS];
+// Of each of the lane's pixels, as other stages own them: a bit per sample. MIXED: those that the nearest surface covers.
+uint coverage_masks[ROWS], nearest_masks[ROWS];
 
 const uint LANE_SAMPLES = SAMPLES * TILE / LANES;
 const uint SAMPLE_WORDS = (LANE_SAMPLES + 3) / 4;
 
 // Covered samples of the lane's row, a byte per sample, a bit per column.
 uint row_coverage[SAMPLE_WORDS];
+// MIXED: those that splats of the nearest surface cover, and the depths of the row's pixels.
+uint row_nearest[SAMPLE_WORDS];
+float row_depths[TILE];
 // Visible columns of the row, in each byte.
 uint row_visible;
 
@@ -27,22 +30,43 @@ uint column_mask(float x0, float x1) {
     return (0xffu << first) & (0xffu >> beyond) & 0xffu;
 }
 
-// Visible pixels of the tile with uncovered samples, four rows in each word, a bit per column.
+// Visible pixels of the tile with uncovered samples, or MIXED with samples that the nearest surface does not cover: four rows in each word, a
+// bit per column.
 uvec2 incomplete_pixels;
-// κ below which splats are skipped: 0 while there are any.
+// κ below which splats are skipped: 0 while pixels have uncovered samples.
 float coverage_cull_key;
 
-void update_incomplete_pixels() {
+// Columns of the lane's row with samples that are not covered.
+uint incomplete_columns(const uint row_samples[SAMPLE_WORDS]) {
     uint covered = ~0u;
-    for (uint w = 0; w < SAMPLE_WORDS; w++) covered &= row_coverage[w];
+    for (uint w = 0; w < SAMPLE_WORDS; w++) covered &= row_samples[w];
     if (LANE_SAMPLES >= 4) covered &= covered >> 16;
-    uint row = lane % TILE, columns = row_visible & ~(covered & covered >> 8) & 0xffu;
-    incomplete_pixels = row < 4 ? uvec2(columns << 8 * row, 0) : uvec2(0, columns << 8 * (row - 4));
+    return row_visible & ~(covered & covered >> 8) & 0xffu;
+}
+
+// Pixels of the tile, from the columns of each lane's row.
+uvec2 pixels_of_rows(uint columns) {
+    uint row = lane % TILE;
+    uvec2 pixels = row < 4 ? uvec2(columns << 8 * row, 0) : uvec2(0, columns << 8 * (row - 4));
     for (uint k = 0; k < STEPS; k++) {
-        incomplete_pixels.x |= shuffle(incomplete_pixels.x, lane ^ 1u << k);
-        incomplete_pixels.y |= shuffle(incomplete_pixels.y, lane ^ 1u << k);
+        pixels.x |= shuffle(pixels.x, lane ^ 1u << k);
+        pixels.y |= shuffle(pixels.y, lane ^ 1u << k);
     }
-    coverage_cull_key = incomplete_pixels == uvec2(0) ? 1e30 : 0.0;
+    return pixels;
+}
+
+void update_incomplete_pixels() {
+    uint columns = incomplete_columns(row_coverage);
+    if (MIXED) {
+        bool is_complete = workgroup_ballot(columns != 0) == 0;
+        incomplete_pixels = pixels_of_rows(incomplete_columns(row_nearest));
+        // Splats of the nearest surface are among those that visibility visited, if these have been recorded.
+        bool is_nearest_complete = visited_count <= MOST_VISITED || incomplete_pixels == uvec2(0);
+        coverage_cull_key = !is_complete ? 0.0 : is_nearest_complete ? 1e30 : 0.999999 * least_depth();
+    } else {
+        incomplete_pixels = pixels_of_rows(columns);
+        coverage_cull_key = incomplete_pixels == uvec2(0) ? 1e30 : 0.0;
+    }
 }
 
 // Four bits as the lowest ones of four bytes.
@@ -130,8 +154,9 @@ uint sample_columns(TileSplat solid, Turn turn, vec2 d) {
     return mask;
 }
 
-// Adds the samples of a word that a splat covers at the columns of its `fragments`; returns the columns of which it covers samples.
-uint add_samples(TileSplat solid, Turn turn, float y, uint fragments, const uint word) {
+// Adds the samples of a word that a splat covers at the columns of its `fragments`, of which `nearest` are of the nearest surface; returns the
+// columns of which it covers samples.
+uint add_samples(TileSplat solid, Turn turn, float y, uint fragments, uint nearest, const uint word) {
     uint any = 0, added = 0;
     for (uint j = 0; j < LANE_SAMPLES - 4 * word && j < 4; j++) {
         uint k = lane / TILE * LANE_SAMPLES + 4 * word + j;
@@ -140,6 +165,7 @@ uint add_samples(TileSplat solid, Turn turn, float y, uint fragments, const uint
         added |= (columns & fragments) << 8 * j;
     }
     row_coverage[word] |= added;
+    if (MIXED) row_nearest[word] |= added & 0x1010101u * nearest;
     return any;
 }
 
@@ -148,18 +174,19 @@ uint add_samples(TileSplat solid, Turn turn, float y, uint fragments, const uint
 void add_coverage(TileSplat splat, TileSplat solid, Turn turn, vec2 offset, uint nearest, bool is_splat) {
     float y = float(lane % TILE);
     uint first = lane / TILE * LANE_SAMPLES;
-    uint fragments = 0;
+    uint fragments = 0, of_nearest = 0;
     for (uint x = 0; x < TILE; x++) {
         vec2 m;
         float key, rank;
         fragments |= uint(tile_fragment(splat, vec2(x, y), m, key, rank)) << x;
+        if (MIXED) of_nearest |= uint(ranked(key, rank) >= row_depths[x]) << x;
     }
     fragments = is_splat ? fragments : 0;
     // One by one: the compiler does not unroll a loop of that many instructions, and dynamic indexing is slow.
-    uint any = add_samples(solid, turn, y, fragments, 0);
-    if (SAMPLE_WORDS > 1) any |= add_samples(solid, turn, y, fragments, 1);
-    if (SAMPLE_WORDS > 2) any |= add_samples(solid, turn, y, fragments, 2);
-    if (SAMPLE_WORDS > 3) any |= add_samples(solid, turn, y, fragments, 3);
+    uint any = add_samples(solid, turn, y, fragments, of_nearest, 0);
+    if (SAMPLE_WORDS > 1) any |= add_samples(solid, turn, y, fragments, of_nearest, 1);
+    if (SAMPLE_WORDS > 2) any |= add_samples(solid, turn, y, fragments, of_nearest, 2);
+    if (SAMPLE_WORDS > 3) any |= add_samples(solid, turn, y, fragments, of_nearest, 3);
     for (uint k = 3; k < STEPS; k++) any |= shuffle(any, lane ^ 1u << k);
     // A splat covers at least one sample of the pixel that contains its centre.
     uint centre = abs(y - offset.y) <= 0.5 ? column_mask(offset.x - 0.5, offset.x + 0.5) : 0;
@@ -167,36 +194,63 @@ void add_coverage(TileSplat splat, TileSplat solid, Turn turn, vec2 offset, uint
     for (uint w = 0; w < SAMPLE_WORDS; w++) {
         uint byte = nearest - first - 4 * w;
         row_coverage[w] |= byte < 4 ? uncovered << 8 * byte : 0;
+        if (MIXED) row_nearest[w] |= byte < 4 ? (uncovered & of_nearest) << 8 * byte : 0;
     }
 }
 
+// A splat that covers samples of the tile.
+struct CoveringSplat {
+    TileSplat splat; // by the variance of visibility
+    TileSplat solid;
+    Turn turn;
+    vec2 offset;     // of its centre from the tile's first pixel, px
+    uint nearest;    // sample nearest to the centre
+    bool reaches;    // it may cover samples of incomplete pixels
+};
+
+CoveringSplat covering_splat(uint id, uvec2 origin) {
+    Splat splat = splat_of(id);
+    vec2 centre = vec2(origin) + 0.5, variance = visibility_variance(variance_of(splat));
+    CoveringSplat covering;
+    covering.splat = splat_on_tile(ellipse_of(splat, variance, clip_of(id)), centre);
+    covering.solid = splat_on_tile(solid_ellipse(splat, clip_of(id)), centre);
+    covering.turn = CURVATURES ? turn_on_tile(covering.solid, least_key(splat)) : NO_TURN;
+    covering.offset = splat.offset - (centre - anchor_of(splat));
+    covering.nearest = nearest_sample(covering.offset - ceil(covering.offset - 0.5));
+    // More than rounding moves the edges of its fragments.
+    vec2 reach = largest_stretch() * half_extent(splat.axis, variance) + 0.01;
+    covering.reaches = reaches_incomplete_pixels(covering.offset, reach);
+    return covering;
+}
+
+CoveringSplat shuffle(CoveringSplat o, uint from) {
+    CoveringSplat result = o;
+    result.splat = shuffle(o.splat, from);
+    result.solid = shuffle(o.solid, from);
+    if (CURVATURES) result.turn = shuffle(o.turn, from);
+    result.offset = shuffle(o.offset, from);
+    result.nearest = shuffle(o.nearest, from);
+    return result;
+}
+
 // Adds the samples of the splat that lane `from` has.
-void add_coverage_of(
-    uint from, TileSplat splat, TileSplat solid, Turn turn, vec2 offset, uint nearest, bool is_splat) {
-    Turn current = CURVATURES ? shuffle(turn, from) : NO_TURN;
-    add_coverage(shuffle(splat, from), shuffle(solid, from), current, shuffle(offset, from), shuffle(nearest, from), is_splat);
+void add_coverage_of(uint from, CoveringSplat splat, bool is_splat) {
+    CoveringSplat current = shuffle(splat, from);
+    add_coverage(current.splat, current.solid, current.turn, current.offset, current.nearest, is_splat);
 }
 
 void add_coverage_batch(uint count, uint id, uvec2 origin) {
-    Splat splat = splat_of(id);
-    vec2 centre = vec2(origin) + 0.5, variance = variance_of(splat);
-    TileSplat lane_splat = splat_on_tile(ellipse_of(splat, visibility_variance(variance), clip_of(id)), centre);
-    TileSplat lane_solid = splat_on_tile(solid_ellipse(splat, clip_of(id)), centre);
-    Turn lane_turn = CURVATURES ? turn_on_tile(lane_solid, least_key(splat)) : NO_TURN;
-    vec2 lane_offset = splat.offset - (centre - anchor_of(splat));
-    uint lane_nearest = nearest_sample(lane_offset - ceil(lane_offset - 0.5));
-    // More than rounding moves the edges of its fragments.
-    vec2 reach = largest_stretch() * half_extent(splat.axis, visibility_variance(variance)) + 0.01;
-    bool reaches = lane < count && reaches_incomplete_pixels(lane_offset, reach);
+    CoveringSplat splat = covering_splat(id, origin);
+    bool reaches = lane < count && splat.reaches;
     for (uint first = 0; first < LANES; first += 32) {
         uint remaining = workgroup_ballot(reaches && lane / 32 == first / 32);
         do {
             uint from = first + uint(max(findLSB(remaining), 0));
-            add_coverage_of(from, lane_splat, lane_solid, lane_turn, lane_offset, lane_nearest, remaining != 0);
+            add_coverage_of(from, splat, remaining != 0);
             remaining &= remaining - 1;
 #if COVERAGE_UNROLLED == 2
             from = first + uint(max(findLSB(remaining), 0));
-            add_coverage_of(from, lane_splat, lane_solid, lane_turn, lane_offset, lane_nearest, remaining != 0);
+            add_coverage_of(from, splat, remaining != 0);
             remaining &= remaining - 1;
 #endif
         } while (remaining != 0);
@@ -214,6 +268,26 @@ void add_coverage_batch(uint count, uint id, uvec2 origin) {
 #define WALK_BATCH(count, id) add_coverage_batch(count, id, origin)
 #include "lib/walk.glsl"
 
+// Value of each lane's pixels in the columns of the lane's row, from the pixels that lanes own.
+#define GATHER_ROW(TYPE, VALUES, ROW)                                                                                      \
+    for (uint x = 0; x < TILE; x++) {                                                                                      \
+        for (uint r = 0; r < ROWS; r++) {                                                                                  \
+            TYPE value = shuffle(VALUES[r], x + TILE * (lane % TILE % ROW_STEP));                                          \
+            ROW[x] = lane % TILE / ROW_STEP == r ? value : ROW[x];                                                         \
+        }                                                                                                                  \
+    }
+
+// The samples of the lane's pixel `row`, from the samples that lanes have of rows.
+uint mask_of_pixel(const uint row_samples[SAMPLE_WORDS], uint row) {
+    uvec2 pixel = lane_pixel(row);
+    uint mask = 0;
+    for (uint k = 0; k < SAMPLES; k++) {
+        uint word = shuffle(row_samples[k % LANE_SAMPLES / 4], pixel.y + TILE * (k / LANE_SAMPLES));
+        mask |= (word >> 8 * (k % LANE_SAMPLES % 4) + pixel.x & 1u) << k;
+    }
+    return mask;
+}
+
 // Computes coverage of the tile, after visibility: only visible pixels are covered.
 void compute_coverage(uvec2 origin) {
     row_visible = 0;
@@ -227,22 +301,18 @@ void compute_coverage(uvec2 origin) {
         row_visible = row / ROW_STEP == r ? columns & 0xffu : row_visible;
         row_full = row / ROW_STEP == r ? columns >> 8 : row_full;
     }
+    if (MIXED) GATHER_ROW(float, depths, row_depths)
     const uint bytes = LANE_SAMPLES < 4 ? 0x101u : 0x1010101u;
     row_visible *= bytes;
-    for (uint w = 0; w < SAMPLE_WORDS; w++) row_coverage[w] = row_full * bytes;
+    for (uint w = 0; w < SAMPLE_WORDS; w++) row_coverage[w] = row_nearest[w] = row_full * bytes;
     update_incomplete_pixels();
     // First those that visibility visited: they cover most tiles alone.
     WORKGROUP_BARRIER();
-    bool lacks = coverage_cull_key == 0.0, all_recorded = visited_count <= MOST_VISITED;
+    bool lacks = incomplete_pixels != uvec2(0), all_recorded = visited_count <= MOST_VISITED;
     uint first = all_recorded ? 0 : SCRATCH, end = all_recorded && lacks ? visited_count : first;
     walk_coverage(origin, origin + TILE - 1, first, end, lacks);
     for (uint r = 0; r < ROWS; r++) {
-        uvec2 pixel = lane_pixel(r);
-        uint mask = is_resumed() ? coverage_masks[r] : 0;
-        for (uint k = 0; k < SAMPLES; k++) {
-            uint word = shuffle(row_coverage[k % LANE_SAMPLES / 4], pixel.y + TILE * (k / LANE_SAMPLES));
-            mask |= (word >> 8 * (k % LANE_SAMPLES % 4) + pixel.x & 1u) << k;
-        }
-        coverage_masks[r] = mask;
+        coverage_masks[r] = (is_resumed() ? coverage_masks[r] : 0) | mask_of_pixel(row_coverage, r);
+        if (MIXED) nearest_masks[r] = mask_of_pixel(row_nearest, r);
     }
 }

@@ -11,8 +11,11 @@ const bool HAS_FRONTS = false;
 const bool HAS_FRONTS = CULL_AUTO && !FRONTS;
 #endif
 
-// COVERAGE: the lane's pixels that lie within the solid part of a disc, of which all samples are covered; a bit each.
+// COVERAGE: the lane's pixels that lie within the solid part of a disc, of which all samples are covered; a bit each. MIXED: within one of
+// the nearest surface.
 uint full_pixels = 0;
+// MIXED: κ of the nearest disc within whose solid part the pixel lies.
+float full_keys[ROWS];
 
 // Whether depths are those of a dispatch before: of the previous slice, or of the splats that face the eye, before sides.
 bool has_depths() {
@@ -24,6 +27,7 @@ bool has_depths() {
 void load_depth(uint row, uint bits) {
     depths[row] = uintBitsToFloat(bits & ~FULL_PIXEL);
     full_pixels |= uint((bits & FULL_PIXEL) != 0) << row;
+    full_keys[row] = (bits & FULL_PIXEL) != 0 ? depths[row] : 0.0;
 }
 
 // Bits of the depth of the lane's pixel `row`, and of the splats that face the eye whether the pixel is full.
@@ -60,7 +64,8 @@ void add_visibility(TileSplat splat, vec2 limit, vec2 full, uint id, bool is_spl
         float key, rank;
         bool has_fragment = tile_fragment(splat, vec2(lane_pixel(r)), m, key, rank) && is_splat;
         bool is_full = COVERAGE && has_fragment && dot(m, m) <= full.x && (!CURVATURES || key >= full.y);
-        full_pixels |= uint(is_full) << r;
+        if (MIXED) full_keys[r] = is_full ? max(full_keys[r], key) : full_keys[r];
+        else full_pixels |= uint(is_full) << r;
 #ifdef NEAREST_SPLAT
         float depth = ranked(min(key, limit.x), rank);
         bool nearer = has_fragment && (depth > depths[r] || depth == depths[r] && id < nearest_splats[r]);
@@ -123,7 +128,12 @@ void compute_visibility(uvec2 origin) {
         nearest_splats[r] = is_resumed() ? nearest_splats[r] : 0;
 #endif
     }
+    if (MIXED && !has_depths()) for (uint r = 0; r < ROWS; r++) full_keys[r] = 0.0;
     update_visibility_cull_key();
     visited_count = 0;
     walk_visibility(origin, origin + TILE - 1, 0, 0, true);
+    if (MIXED) {
+        full_pixels = 0;
+        for (uint r = 0; r < ROWS; r++) full_pixels |= uint(full_keys[r] > 0.0 && full_keys[r] >= depths[r]) << r;
+    }
 }

@@ -127,6 +127,7 @@ fn what(run: &Run) -> Vec<Cell> {
         ("epsilon", setting.epsilon.to_string()),
         ("cull", setting.cull.clone()),
         ("alpha", setting.alpha.clone()),
+        ("edges", setting.edges.clone()),
         ("shading", setting.shading.clone()),
         ("footprint", setting.axes.footprint.clone()),
         ("kernel", setting.axes.kernel.clone()),

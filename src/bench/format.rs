@@ -233,7 +233,7 @@ pub fn stale(provenance: &Provenance, code: &str, now: &str) -> Option<String> {
 }
 
 /// Place of the shading among [`settings`].
-const SHADING: usize = 7;
+const SHADING: usize = 8;
 
 /// Value of `--pixel-filter` of this variance.
 fn pixel_filter_option(variance: f32) -> String {
@@ -241,8 +241,8 @@ fn pixel_filter_option(variance: f32) -> String {
 }
 
 /// Each setting as its option of `surfel render`, without the axes, which the implementation's name contains.
-pub fn settings(setting: &RunSettings) -> [String; 8] {
-    let RunSettings { cutoff, lowpass, pixel_filter, widen, epsilon, cull, alpha, shading, axes: _ } =
+pub fn settings(setting: &RunSettings) -> [String; 9] {
+    let RunSettings { cutoff, lowpass, pixel_filter, widen, epsilon, cull, alpha, edges, shading, axes: _ } =
         setting;
     [
         format!("--lowpass {lowpass}"),
@@ -252,12 +252,13 @@ pub fn settings(setting: &RunSettings) -> [String; 8] {
         format!("--epsilon {epsilon}"),
         format!("--cull {cull}"),
         format!("--alpha {alpha}"),
+        format!("--edges {edges}"),
         format!("--shading {shading}"),
     ]
 }
 
 /// The settings in which `runs` differ.
-pub fn differing_settings<'a>(runs: impl IntoIterator<Item = &'a Run>) -> [bool; 8] {
+pub fn differing_settings<'a>(runs: impl IntoIterator<Item = &'a Run>) -> [bool; 9] {
     let all: Vec<_> = runs.into_iter().map(|run| settings(&run.settings)).collect();
     std::array::from_fn(|i| all.iter().any(|one| one[i] != all[0][i]))
 }

@@ -133,6 +133,7 @@ impl RunSettings {
             epsilon: settings.epsilon,
             cull: settings.cull.name().into(),
             alpha: settings.alpha.name().into(),
+            edges: settings.edges.name().into(),
             shading: settings.shading.name().into(),
             axes: Axes::of(&settings.splatting),
         }

@@ -206,7 +206,7 @@ fn hard(
 /// baselines, one of the same suite and experiment is preferred, as it ran at about the same time.
 fn compare_times(runs: &mut [Run]) {
     let shipped = |run: &&Run| {
-        let RunSettings { cutoff, lowpass, pixel_filter, widen, epsilon, cull, alpha, .. } =
+        let RunSettings { cutoff, lowpass, pixel_filter, widen, epsilon, cull, alpha, edges, .. } =
             RunSettings::of(&baseline::settings(&Settings::default()));
         let own = &run.settings;
         (own.cutoff, own.lowpass, own.epsilon) == (cutoff, lowpass, epsilon)
@@ -214,6 +214,7 @@ fn compare_times(runs: &mut [Run]) {
             && own.widen == widen
             && own.cull == cull
             && own.alpha == alpha
+            && own.edges == edges
     };
     let baselines = runs.iter().filter(|run| run.implementation.method == SPLATS).filter(shipped);
     let baselines: Vec<Run> = baselines.filter(|run| run.ms().is_some()).cloned().collect();

@@ -48,7 +48,7 @@ fn value(method: &Method) -> Value {
         .collect();
     let settings = json!({
         "cutoff": method.cutoff, "lowpass": method.lowpass, "pixel_filter": method.pixel_filter, "widen": method.widen.name(), "cull": method.cull.name(),
-        "alpha": method.alpha.name(),
+        "alpha": method.alpha.name(), "edges": method.edges.name(),
     });
     json!({ "name": method.name, "paper": method.paper, "axes": axes, "settings": settings, "frames": frames })
 }
@@ -92,7 +92,7 @@ fn picture_options(method: &Method) -> String {
         0.0 => "none".into(),
         variance => format!("gaussian:{variance}"),
     };
-    format!("--alpha {} --pixel-filter {filter}", method.alpha.name())
+    format!("--alpha {} --edges {} --pixel-filter {filter}", method.alpha.name(), method.edges.name())
 }
 
 fn describe_frames(text: &mut String, method: &Method) {

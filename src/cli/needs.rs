@@ -5,7 +5,7 @@ use surfel::frame::FramePlan;
 use surfel::scene::{ColourStream, PrimitiveKinds, Streams};
 use surfel::settings::methods::{Method, confetti, object_ewa, perspective_ewa, pull_push, sprites};
 use surfel::settings::splatting::{Normalization, Splatting};
-use surfel::settings::{Alpha, Cull, Shading};
+use surfel::settings::{Alpha, Cull, Edges, Shading};
 use surfel::{Outputs, Rasterizer, RenderOptions, Settings};
 
 /// A row of the table: a frame of a scene.
@@ -62,6 +62,8 @@ fn cases() -> Vec<Case> {
         coloured(perspective_ewa::METHOD)
             .asking("own colours", |settings, _| settings.shading = Shading::Colour),
         coloured(perspective_ewa::METHOD).asking("lit, a mask", |settings, _| settings.alpha = Alpha::Mask),
+        coloured(perspective_ewa::METHOD)
+            .asking("lit, nearest surface alone", |settings, _| settings.edges = Edges::Nearest),
         coloured(perspective_ewa::METHOD).asking("lit, unfiltered, both sides", |settings, _| {
             (settings.pixel_filter, settings.cull) = (0.0, Cull::None);
         }),

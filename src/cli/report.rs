@@ -120,6 +120,7 @@ fn settings(settings: &Settings) -> Value {
         epsilon,
         cull,
         alpha,
+        edges,
         shading,
         background,
         lighting,
@@ -135,7 +136,7 @@ fn settings(settings: &Settings) -> Value {
         "footprint": footprint.name(), "kernel": kernel.to_string(), "filter": filter.name(),
         "visibility": visibility.name(), "normalization": normalization.name(), "shade": shade.name(),
         "cutoff": cutoff, "lowpass": lowpass, "pixel_filter": pixel_filter, "widen": widen.name(), "epsilon": epsilon, "cull": cull.name(),
-        "alpha": alpha.name(), "shading": shading.name(),
+        "alpha": alpha.name(), "edges": edges.name(), "shading": shading.name(),
         "background": background, "lighting": light(lighting),
     })
 }

@@ -131,8 +131,12 @@ pub enum Domain {
     Tiles,
     /// One invocation per tile.
     TileSlots,
+    /// One workgroup per tile, with all splats in one dispatch.
+    WholeTiles,
     /// One workgroup per tile in the list of open ones.
     OpenTiles,
+    /// One workgroup per tile in the list of those with edges.
+    EdgeTiles,
     /// Elements of a level, as the steps of the pass define.
     Level,
     /// One triangle per splat.
@@ -159,6 +163,15 @@ pub enum Scope {
 }
 
 impl Domain {
+    /// The list of tiles that it is.
+    pub fn tile_list(self) -> Option<Resource> {
+        match self {
+            Self::OpenTiles => Some(Resource::OpenTiles),
+            Self::EdgeTiles => Some(Resource::EdgeTiles),
+            _ => None,
+        }
+    }
+
     /// Owner of descriptor set 0.
     pub fn scope(self) -> Scope {
         match self {
@@ -174,8 +187,10 @@ impl Domain {
             Self::Pixels
             | Self::Blocks
             | Self::Tiles
+            | Self::WholeTiles
             | Self::TileSlots
             | Self::OpenTiles
+            | Self::EdgeTiles
             | Self::Level
             | Self::FullScreen => Scope::View,
         }

@@ -171,8 +171,16 @@ impl PreparedPass {
                         let hierarchy = splats.hierarchy(slices, frame.most_steps(), frame.number);
                         enc.dispatch(pipeline, &sets, &hierarchy, [columns, rows, 1]);
                     }
-                    (Domain::OpenTiles, Some(splats)) => {
-                        let Some(list) = frame.targets.buffer(Resource::OpenTiles) else { continue };
+                    (Domain::WholeTiles, Some(splats)) => {
+                        let [columns, rows] = frame.targets.tiles();
+                        let hierarchy = splats.hierarchy([0, 1], frame.most_steps(), frame.number);
+                        enc.dispatch(pipeline, &sets, &hierarchy, [columns, rows, 1]);
+                    }
+                    (Domain::OpenTiles | Domain::EdgeTiles, Some(splats)) => {
+                        let Some(list) = domain.tile_list().and_then(|list| frame.targets.buffer(list))
+                        else {
+                            continue;
+                        };
                         let hierarchy = splats.hierarchy([0, 1], frame.most_steps(), frame.number);
                         enc.dispatch_indirect(pipeline, &sets, &hierarchy, (list, 0));
                     }
@@ -348,10 +356,10 @@ impl Pass {
         let touched = touched.filter(|(_, stages, _)| !stages.is_empty());
         let access = |(resource, stages, write)| {
             let access = Access::of_shader(stages, write);
-            let over_open = programs.iter().any(|program| program.domain == Domain::OpenTiles);
+            let over = |list| programs.iter().any(|program| program.domain.tile_list() == Some(list));
             let indirect = match resource {
                 Resource::VisibleClusters => !write,
-                Resource::OpenTiles => over_open,
+                Resource::OpenTiles | Resource::EdgeTiles => over(resource),
                 _ => false,
             };
             (resource, if indirect { access.and_indirect() } else { access })

@@ -27,8 +27,12 @@ pub enum Resource {
     Sums1,
     /// Tile path: the tiles that splats that face away may change, after the workgroups of an indirect dispatch over them.
     OpenTiles,
-    /// Mask of each pixel's covered samples, if α is coverage.
+    /// Tile path: the tiles with pixels at edges, after the workgroups of an indirect dispatch over them.
+    EdgeTiles,
+    /// Mask of each pixel's covered samples, if α is coverage; in frames that mix edges also of those of the nearest surface.
     Coverage,
+    /// Raster path: depth key of the surface behind in pixels at edges, moved back by ε.
+    Behind,
     /// Distance and id of the nearest point of each pixel.
     Nearest,
     /// Depth of the nearest rasterized point, a bijection of its distance.
@@ -71,7 +75,9 @@ impl Resource {
             Self::Sums0 => "sums0",
             Self::Sums1 => "sums1",
             Self::OpenTiles => "open tiles",
+            Self::EdgeTiles => "edge tiles",
             Self::Coverage => "coverage",
+            Self::Behind => "behind",
             Self::Nearest => "nearest",
             Self::NearestDepth => "nearest_depth",
             Self::NearestId => "nearest_id",

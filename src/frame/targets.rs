@@ -1,9 +1,9 @@
 //! Render targets: name, format, binding, and the frames that have them.
 
-use super::open_tiles;
 use super::pass::{DrawTargets, InitialContents, Pass};
 use super::pyramids::{NEAREST_POINT, Pyramids};
 use super::resource::Resource;
+use super::tile_list;
 use super::variant::Variant;
 use crate::error::{Error, Result};
 use crate::settings::splatting::Visibility;
@@ -37,7 +37,7 @@ pub enum Kind {
     Image(ImageUse),
     /// A buffer of so many bytes per pixel, row by row from the top left.
     Pixels(u64),
-    /// The list of open tiles.
+    /// A list of tiles.
     Tiles,
 }
 
@@ -100,7 +100,9 @@ impl Resource {
             Self::Sums0 => &[&resource::SUMS0, &resource::SUMS0_IMAGE, &resource::SUMS0_INPUT],
             Self::Sums1 => &[&resource::SUMS1, &resource::SUMS1_IMAGE, &resource::SUMS1_INPUT],
             Self::OpenTiles => &[&resource::OPEN_TILES],
+            Self::EdgeTiles => &[&resource::EDGE_TILES],
             Self::Coverage => &[&resource::COVERAGE],
+            Self::Behind => &[&resource::BEHIND_IMAGE],
             Self::Nearest => &[&resource::NEAREST],
             Self::NearestDepth => &[&resource::NEAREST_DEPTH],
             Self::NearestId => &[&resource::NEAREST_ID],
@@ -194,9 +196,9 @@ fn raster_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
     let sampled = |resource, format, shader| image(resource, format, ImageUse::Sampled, Some(shader));
     let output = |resource, format| image(resource, format, ImageUse::Output, None);
     let [sums0, sums1] = [sums(variant.wide_sums0()), sums(variant.wide_sums1())];
-    let picture = match variant.filter_radius {
-        0 => output(Resource::Image, COLOUR),
-        _ => image(Resource::Image, COLOUR, ImageUse::FilteredOutput, Some(&resource::IMAGE_OUTPUT)),
+    let picture = match variant.filter_radius > 0 || variant.mixed {
+        false => output(Resource::Image, COLOUR),
+        true => image(Resource::Image, COLOUR, ImageUse::FilteredOutput, Some(&resource::IMAGE_OUTPUT)),
     };
     vec![
         Some(sampled(Resource::Visibility, Format::D32_SFLOAT, &resource::VISIBILITY_IMAGE)),
@@ -206,6 +208,7 @@ fn raster_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
         variant.outputs.normal.then(|| output(Resource::Normal, COLOUR)),
         variant.outputs.depth.then(|| output(Resource::Depth, Format::R32_SFLOAT)),
         coverage(variant),
+        variant.mixed.then(|| sampled(Resource::Behind, Format::D32_SFLOAT, &resource::BEHIND_IMAGE)),
     ]
 }
 
@@ -213,9 +216,11 @@ fn compute_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
     let outputs = stored_outputs(variant.outputs).into_iter();
     let visibility = pixels(Resource::Visibility, Format::R32_UINT, 4, &resource::VISIBILITY);
     if !variant.split && !variant.sliced {
-        let visibility = variant.cull_auto.then_some(visibility);
-        let open = variant.opens_tiles().then_some(open_tiles::TARGET);
-        return [visibility, open].into_iter().chain(outputs).collect();
+        let visibility = (variant.cull_auto || variant.mixed).then_some(visibility);
+        let open = variant.opens_tiles().then_some(tile_list::OPEN);
+        let edges = variant.mixed.then_some(tile_list::EDGES);
+        let coverage = coverage(variant).filter(|_| variant.mixed);
+        return [visibility, open, edges, coverage].into_iter().chain(outputs).collect();
     }
     if variant.visibility == Visibility::Nearest {
         // State between the slices of the nearest pass: depths and ids of splats.
@@ -278,7 +283,7 @@ pub fn pixel_size(target: &TargetDescription) -> f64 {
     match target.kind {
         Kind::Image(_) => pixel_bytes(target.format) as f64,
         Kind::Pixels(bytes) => bytes as f64,
-        Kind::Tiles => open_tiles::ENTRY as f64 / f64::from(TILE * TILE),
+        Kind::Tiles => tile_list::ENTRY as f64 / f64::from(TILE * TILE),
     }
 }
 
@@ -339,7 +344,7 @@ impl RenderTargets {
                     Memory::Buffer(Buffer::storage(device, name, bytes * pixels_of(size))?)
                 }
                 Kind::Tiles => {
-                    let bytes = open_tiles::bytes(pixels_of(tiles_of(size)));
+                    let bytes = tile_list::bytes(pixels_of(tiles_of(size)));
                     Memory::Buffer(Buffer::indirect(device, name, bytes)?)
                 }
             };
@@ -420,7 +425,9 @@ impl RenderTargets {
     pub fn clear(&self, enc: &mut Encoder<'_, '_>, resource: Resource) {
         match (self.buffer(resource), resource) {
             (Some(buffer), Resource::Nearest) => enc.ones(buffer),
-            (Some(buffer), Resource::OpenTiles) => enc.zero_range(buffer, 0, open_tiles::HEADER),
+            (Some(buffer), Resource::OpenTiles | Resource::EdgeTiles) => {
+                enc.zero_range(buffer, 0, tile_list::HEADER)
+            }
             (Some(buffer), _) => enc.zero(buffer),
             (None, _) => {}
         }

@@ -68,7 +68,8 @@ impl PassTraffic {
 /// The clear before a pass.
 fn cleared(pass: &Pass, variant: &Variant) -> PassTraffic {
     // Of lists, only the lengths are.
-    let cleared = pass.clears.iter().filter(|resource| **resource != Resource::OpenTiles);
+    let is_list = |resource: &Resource| [Resource::OpenTiles, Resource::EdgeTiles].contains(resource);
+    let cleared = pass.clears.iter().filter(|resource| !is_list(resource));
     let pixel = cleared.map(|resource| per_pixel(*resource, variant)).sum();
     PassTraffic { name: "clear", pixel, ..PassTraffic::default() }
 }
@@ -93,7 +94,7 @@ fn declared(pass: &Pass, variant: &SceneVariant, scene: &Streams) -> PassTraffic
     }
     let over =
         |domains: &[Domain]| programs.iter().any(|program: &Program| domains.contains(&program.domain));
-    if over(&[Domain::OpenTiles]) {
+    if over(&[Domain::OpenTiles, Domain::EdgeTiles]) {
         // The dispatch before has left the rest of what it would move.
         return PassTraffic { name: pass.name, ..PassTraffic::default() };
     }

@@ -53,6 +53,8 @@ pub struct Variant {
     pub materials: bool,
     /// α is the covered part of a pixel.
     pub coverage: bool,
+    /// Pixels at edges show the surface behind, too.
+    pub mixed: bool,
     /// Radius of the filter of pixels after shading, px; 0: none.
     pub filter_radius: u32,
     /// Quantity that the picture shows.
@@ -209,6 +211,7 @@ impl Variant {
                 && settings.pull_push.is_some()
                 && shading == Shading::Lit,
             coverage: settings.drawn_alpha() == Alpha::Coverage,
+            mixed: settings.mixes_edges(),
             filter_radius: settings.filter_radius(),
             shading,
             lights: if shading == Shading::Lit { settings.lighting.directional.len() as u32 } else { 0 },

@@ -37,6 +37,8 @@ pub struct Settings {
     pub cull: Cull,
     /// Meaning of α.
     pub alpha: Alpha,
+    /// Surfaces that pixels at edges show.
+    pub edges: Edges,
     /// Quantity that the picture shows.
     pub shading: Shading,
     /// Background colour, linear RGB; `None` is transparent (all channels 0). Partly covered pixels are blended with it.
@@ -58,6 +60,7 @@ impl Default for Settings {
             epsilon: 1.0,
             cull: Cull::Auto,
             alpha: Alpha::Coverage,
+            edges: Edges::Mixed,
             shading: Shading::Lit,
             background: None,
             lighting: Lighting::default(),
@@ -115,11 +118,20 @@ impl Settings {
         self.cull == Cull::Auto && self.pull_push.is_none() && self.splatting.visibility != Visibility::Axis
     }
 
+    /// Whether pixels at edges show the surface behind, too, for [`Edges::Mixed`].
+    pub fn mixes_edges(&self) -> bool {
+        self.edges == Edges::Mixed
+            && self.pull_push.is_none()
+            && self.splatting.visibility == Visibility::Ray
+            && self.drawn_alpha() == Alpha::Coverage
+            && matches!(self.shading, Shading::Lit | Shading::Colour)
+    }
+
     /// The settings by which subpasses of a host draw: over the host's picture, without the filter of pixels, which reads neighbours, and
-    /// without [`Cull::Auto`], which needs a visibility pass before them.
+    /// without [`Cull::Auto`] and [`Edges::Mixed`], which need other passes before and after them.
     pub fn in_subpasses(&self) -> Self {
         let cull = if self.cull == Cull::Auto { Cull::None } else { self.cull };
-        Self { background: None, pixel_filter: 0.0, cull, ..self.clone() }
+        Self { background: None, pixel_filter: 0.0, cull, edges: Edges::Nearest, ..self.clone() }
     }
 
     /// Returns an error if the scene has lines or triangles, as `there` tells, and the method draws splats only.
@@ -280,6 +292,32 @@ pub enum Alpha {
     /// samples, too; the removed side is drawn up to half a pixel beyond it where nothing else is. Pull–push has the pixels of a mask;
     /// those next to an empty one have the samples inside any disc that was reconstructed around them.
     Coverage,
+}
+
+/// Surfaces that a pixel at an edge shows.
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    strum::EnumMessage,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
+pub enum Edges {
+    /// The nearest one alone.
+    Nearest,
+    /// The nearest one and the one behind it, each by its samples: smooth edges inside the picture.
+    ///
+    /// Of the 16 samples of [`Alpha::Coverage`], those inside splats within ε of the nearest one are of the nearest surface. If other splats
+    /// cover further samples, the nearest of these and what is within its ε are the surface behind, which shows in all further samples. Only
+    /// light and colours are mixed; depths, normals and α are as of `nearest`. Pull–push, [`Visibility::Axis`], [`Visibility::Nearest`],
+    /// [`Alpha::Mask`] and subpasses of a host show the nearest surface alone.
+    Mixed,
 }
 
 /// Quantity that the picture shows.

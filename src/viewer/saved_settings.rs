@@ -9,7 +9,7 @@ use surfel::formats::atomic;
 use surfel::settings::methods::Method;
 use surfel::settings::pull_push::{PullPush, Storage};
 use surfel::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
-use surfel::settings::{Alpha, Choice, Cull, Shading, Widen};
+use surfel::settings::{Alpha, Choice, Cull, Edges, Shading, Widen};
 use surfel::{Error, Result, Settings};
 
 /// Method and settings, by the names of the command line's options.
@@ -33,6 +33,8 @@ pub struct SavedSettings {
     epsilon: f32,
     cull: String,
     alpha: String,
+    #[serde(default = "nearest")]
+    edges: String,
     shading: String,
     /// Linear colour.
     background: Option<[f32; 3]>,
@@ -90,6 +92,7 @@ impl SavedSettings {
             epsilon: settings.epsilon,
             cull: settings.cull.name().into(),
             alpha: settings.alpha.name().into(),
+            edges: settings.edges.name().into(),
             shading: settings.shading.name().into(),
             background: settings.background,
             panel_hidden,
@@ -120,6 +123,7 @@ impl SavedSettings {
             epsilon: self.epsilon,
             cull: Cull::named(&self.cull)?,
             alpha: Alpha::named(&self.alpha)?,
+            edges: Edges::named(&self.edges)?,
             shading: Shading::named(&self.shading)?,
             background: self.background,
             lighting: preset.lighting,
@@ -137,6 +141,11 @@ impl SavedSettings {
             shade: Shade::named(&self.shade)?,
         })
     }
+}
+
+/// Edges of files that do not contain them.
+fn nearest() -> String {
+    Edges::Nearest.name().into()
 }
 
 #[cfg(test)]
@@ -160,6 +169,7 @@ mod tests {
             epsilon: 0.3,
             cull: Cull::Back,
             alpha: Alpha::Coverage,
+            edges: Edges::Nearest,
             shading: Shading::Normal,
             background: Some([0.1, 0.2, 1.0]),
             ..Settings::default()

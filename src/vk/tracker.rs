@@ -151,8 +151,9 @@ impl State {
             return None;
         }
         let alters = access.write || !same_layout;
-        // A write discards an image's contents: targets are cleared or fully overwritten.
-        let old = if access.write { vk::ImageLayout::UNDEFINED } else { self.layout };
+        // Attachments are cleared or fully overwritten, so that their contents are discarded. Shaders may write some pixels only.
+        let discards = access.write && access.layout != vk::ImageLayout::GENERAL;
+        let old = if discards { vk::ImageLayout::UNDEFINED } else { self.layout };
         let reads = if alters { self.reads.0 } else { vk::PipelineStageFlags::empty() };
         let mask = if alters { self.write.1 | self.written } else { self.write.1 };
         let change = Change { stages: self.write.0 | reads, mask, from: self.layout, old };

@@ -11,7 +11,7 @@ use surfel::geometry::{Camera, Colours, Ellipse, Extent, Surfels, Weights};
 use surfel::settings::methods::Method;
 use surfel::settings::methods::object_ewa::{self, Progressive};
 use surfel::settings::splatting::{Normalization, Splatting, Visibility};
-use surfel::settings::{Alpha, Cull, DirectionalLight, Shading, Widen};
+use surfel::settings::{Alpha, Cull, DirectionalLight, Edges, Shading, Widen};
 use surfel::verify::reference::{Expected, Tolerance};
 use surfel::verify::scenes::bumpy_sphere;
 use surfel::vk::{Device, DeviceLimits};
@@ -139,7 +139,7 @@ fn passes_and_targets_match_the_plan() {
             let plan = FramePlan::new(&[scene.streams()], true, &settings, &options, rasterizer);
             let mut planned = plan.passes;
             // Passes of one name share a timer.
-            for again in ["footprint", "boxes", "visibility", "surface"] {
+            for again in ["footprint", "boxes", "visibility", "surface", "open"] {
                 if planned.iter().filter(|pass| **pass == again).count() > 1 {
                     let last = planned.iter().rposition(|pass| *pass == again).unwrap();
                     planned.remove(last);
@@ -320,16 +320,18 @@ fn coverage_exists_only_if_requested() {
     let scene = Scene::upload(&device, &sphere(5_000)).unwrap();
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
         let mut renderer = Renderer::new(&device, all_outputs(rasterizer)).unwrap();
-        let mut frame = |alpha| {
-            let settings = Settings { alpha, ..splats_alone() };
+        let mut frame = |alpha, edges| {
+            let settings = Settings { alpha, edges, ..splats_alone() };
             let picture = renderer.render_picture(&scene, &camera(SIZE), &settings).unwrap().0;
             let target = renderer.targets().into_iter().find(|target| target.name == "coverage");
             (target.map(|target| target.bytes), picture.colour.iter().any(|c| c[3] > 0.0 && c[3] < 1.0))
         };
-        assert_eq!(frame(Alpha::Mask), (None, false), "{rasterizer:?}");
-        // On the tile path it is in registers.
-        let target = (rasterizer == Rasterizer::Draw).then_some(4 * 256 * 192);
-        assert_eq!(frame(Alpha::Coverage), (target, true), "{rasterizer:?}");
+        assert_eq!(frame(Alpha::Mask, Edges::Mixed), (None, false), "{rasterizer:?}");
+        // On the tile path it is in registers, unless pass behind reads it.
+        let bytes = 4 * 256 * 192;
+        let target = (rasterizer == Rasterizer::Draw).then_some(bytes);
+        assert_eq!(frame(Alpha::Coverage, Edges::Nearest), (target, true), "{rasterizer:?}");
+        assert_eq!(frame(Alpha::Coverage, Edges::Mixed), (Some(bytes), true), "{rasterizer:?}");
     }
     assert_silent(&device);
 }

@@ -14,6 +14,7 @@ mod capture;
 mod creases;
 mod discs;
 mod disturbance;
+mod edges;
 mod estimate;
 mod filter;
 mod footprint;

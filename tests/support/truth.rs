@@ -49,7 +49,7 @@ impl Differences {
 }
 
 /// Where the comparison camera stands; it looks at the origin, with y upwards.
-fn eye() -> DVec3 {
+pub fn eye() -> DVec3 {
     3.5 * DVec3::new(1.0, 0.8, 1.6).normalize()
 }
 

@@ -4,7 +4,7 @@ use super::PassWork;
 use crate::frame::times::Statistics;
 use crate::settings::methods::Method;
 use crate::settings::splatting::Splatting;
-use crate::settings::{Alpha, Choice, Settings};
+use crate::settings::{Alpha, Choice, Edges, Settings};
 use crate::verify::metrics::path::PathValues;
 use crate::verify::reference::Comparison;
 use schemars::JsonSchema;
@@ -167,11 +167,14 @@ pub struct RunSettings {
     pub widen: String,
     /// [`Settings::epsilon`](crate::Settings::epsilon), radii.
     pub epsilon: f32,
-    /// Which surfels are culled: `none` or `back`.
+    /// Which surfels are culled: `none`, `back` or `auto`.
     pub cull: String,
     /// [`Settings::alpha`](crate::Settings::alpha): `mask` or `coverage`.
     #[serde(default = "mask")]
     pub alpha: String,
+    /// [`Settings::edges`](crate::Settings::edges): `nearest` or `mixed`.
+    #[serde(default = "nearest")]
+    pub edges: String,
     /// The quantity that the picture shows.
     pub shading: String,
     /// The axes of splatting; those of `perspective-ewa` if absent.
@@ -199,6 +202,11 @@ pub struct Axes {
 /// Default of α, for results that do not contain it.
 fn mask() -> String {
     Alpha::Mask.name().into()
+}
+
+/// The same for edges.
+fn nearest() -> String {
+    Edges::Nearest.name().into()
 }
 
 /// What measures the work of a frame.

@@ -30,7 +30,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use surfel::settings::methods::Method;
 use surfel::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
-use surfel::settings::{Alpha, Choice, Cull, Shading, Widen};
+use surfel::settings::{Alpha, Choice, Cull, Edges, Shading, Widen};
 use surfel::{Outputs, Rasterizer, Settings};
 
 /// Renders point-sampled surfaces with Vulkan.
@@ -234,6 +234,9 @@ pub struct RenderSettings {
     /// Meaning of α [default: the method's]
     #[arg(long, value_parser = choice::<Alpha>())]
     pub alpha: Option<Alpha>,
+    /// Surfaces that pixels at edges show [default: the method's]
+    #[arg(long, value_parser = choice::<Edges>())]
+    pub edges: Option<Edges>,
     /// Background: transparent, sRGB codes from 0 to 255, or a CSS colour such as #fff or white
     #[arg(long, value_name = "R,G,B|COLOR|transparent", default_value = "transparent", value_parser = background, allow_hyphen_values = true)]
     pub background: Background,
@@ -246,7 +249,7 @@ pub struct RenderSettings {
     /// Which splats the anti-aliasing filter widens [default: the method's]
     #[arg(long, value_parser = choice::<Widen>())]
     pub widen: Option<Widen>,
-    /// Where a splat's kernel ends, in standard deviations [default: the method's; perspective-ewa: 2.5]
+    /// Where a splat's kernel ends, in standard deviations [default: the method's; perspective-ewa: 3.5]
     #[arg(long, value_name = "F", allow_hyphen_values = true)]
     pub cutoff: Option<f32>,
     /// How far behind the nearest splat others are still blended with it, in radii
@@ -318,6 +321,7 @@ impl RenderSettings {
             epsilon: self.epsilon,
             cull: self.cull.unwrap_or(preset.cull),
             alpha: self.alpha.unwrap_or(preset.alpha),
+            edges: self.edges.unwrap_or(preset.edges),
             shading: self.shading,
             background: self.background.linear(),
             lighting: preset.lighting,

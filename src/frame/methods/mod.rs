@@ -7,9 +7,10 @@ mod pull_push;
 use super::pass::Pass;
 use super::passes::cull::CULL;
 use super::passes::filter::FILTER;
+use super::passes::open::EDGES;
 use super::passes::order::ORDER;
 use super::passes::sides::SIDES;
-use super::passes::{boxes, visibility};
+use super::passes::{behind, boxes, visibility};
 use super::variant::Variant;
 use crate::settings::Rasterizer;
 use crate::settings::splatting::Visibility;
@@ -35,6 +36,9 @@ pub fn passes(variant: &Variant, path: Path, scenes: usize) -> Vec<&'static Pass
             blended::passes(path, visibility == Visibility::Axis, variant.split, variant.cull_auto)
         }
     };
+    if variant.mixed {
+        list.extend(behind(path, variant.split));
+    }
     if variant.filter_radius > 0 && !matches!(path, Path::Subpasses { .. }) {
         list.push(&FILTER);
     }
@@ -54,6 +58,19 @@ fn sides(path: Path, there: bool) -> Vec<&'static Pass> {
         Path::Raster if there => vec![&visibility::RASTER_FRONTS, &SIDES],
         // A host's subpasses have no visibility before them.
         Path::Compute | Path::Raster | Path::Subpasses { .. } => Vec::new(),
+    }
+}
+
+/// The passes after normalize that mix the surface behind into pixels at edges.
+fn behind(path: Path, split: bool) -> Vec<&'static Pass> {
+    match path {
+        Path::Compute if split => vec![&behind::COMPUTE],
+        Path::Compute => vec![&EDGES, &behind::COMPUTE],
+        Path::Raster => {
+            vec![&behind::RASTER_SAMPLES, &behind::RASTER_DEPTHS, &behind::RASTER_SUMS, &behind::RASTER_MIX]
+        }
+        // A host's subpasses have no pass after them.
+        Path::Subpasses { .. } => Vec::new(),
     }
 }
 

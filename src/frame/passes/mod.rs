@@ -4,6 +4,7 @@
 //! surfels. Raster passes also run in subpasses of a host ([`crate::embed::native`]).
 
 pub mod attribute;
+pub mod behind;
 pub mod boxes;
 pub mod copy;
 pub mod cull;

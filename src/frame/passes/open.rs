@@ -1,15 +1,25 @@
-//! Open: tiles that `sides` has opened → list of them, for the second dispatch of `surface` (`open.glsl`).
+//! Open: marked tiles → list of them, for a dispatch over these (`open.glsl`).
 
 use crate::frame::pass::{Commands, Domain, Pass, Program, Programs};
-use crate::frame::resource::Resource::OpenTiles;
-use crate::vk::shaders::OPEN_COMPUTE;
+use crate::frame::resource::Resource::{EdgeTiles, OpenTiles};
+use crate::vk::shaders::{OPEN_COMPUTE, OPEN_EDGES_COMPUTE};
 
-/// One invocation per tile.
+/// One invocation per tile: those that `sides` has opened, for the second dispatch of `surface`.
 pub static OPEN: Pass = Pass {
     name: "open",
     reads: &[],
     writes: &[OpenTiles],
     clears: &[],
     programs: Programs::OfFrame(|_| vec![Program::compute(&OPEN_COMPUTE, Domain::TileSlots)]),
+    commands: Commands::Dispatches,
+};
+
+/// The same for those with edges, for `behind`.
+pub static EDGES: Pass = Pass {
+    name: "open",
+    reads: &[],
+    writes: &[EdgeTiles],
+    clears: &[],
+    programs: Programs::OfFrame(|_| vec![Program::compute(&OPEN_EDGES_COMPUTE, Domain::TileSlots)]),
     commands: Commands::Dispatches,
 };

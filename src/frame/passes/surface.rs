@@ -3,21 +3,22 @@
 use super::tiles;
 use crate::frame::pass::{Commands, Domain, Pass, Program, Programs};
 use crate::frame::resource::Resource::{
-    self, Attributes, Boxes, Depth, Image, IncompleteFrame, Normal, OpenTiles, ScreenClips, Splats,
-    Visibility,
+    self, Attributes, Boxes, Coverage, Depth, EdgeTiles, Image, IncompleteFrame, Normal, OpenTiles,
+    ScreenClips, Splats, Visibility,
 };
 use crate::frame::variant::Variant;
 use crate::vk::shaders::{SURFACE_COMPUTE, SURFACE_SUBGROUPS_COMPUTE, constant};
 
 const READS: &[Resource] = &[Splats, Boxes, Attributes, ScreenClips];
-const WRITES: &[Resource] = &[Visibility, OpenTiles, Image, Normal, Depth, IncompleteFrame];
+const WRITES: &[Resource] =
+    &[Visibility, OpenTiles, EdgeTiles, Coverage, Image, Normal, Depth, IncompleteFrame];
 
 /// One workgroup per tile.
 pub static SURFACE: Pass = Pass {
     name: "surface",
     reads: READS,
     writes: WRITES,
-    clears: &[],
+    clears: &[EdgeTiles],
     programs: Programs::OfFrame(programs),
     commands: Commands::Dispatches,
 };
@@ -27,7 +28,7 @@ pub static FRONTS: Pass = Pass {
     name: "surface",
     reads: READS,
     writes: WRITES,
-    clears: &[OpenTiles],
+    clears: &[OpenTiles, EdgeTiles],
     programs: Programs::OfFrame(|variant| {
         programs(variant).into_iter().map(|program| program.with(constant::FRONTS, true)).collect()
     }),
@@ -48,5 +49,6 @@ pub static OPEN: Pass = Pass {
 };
 
 fn programs(variant: &Variant) -> Vec<Program> {
-    tiles(variant, [&SURFACE_COMPUTE, &SURFACE_SUBGROUPS_COMPUTE])
+    let programs = tiles(variant, [&SURFACE_COMPUTE, &SURFACE_SUBGROUPS_COMPUTE]);
+    programs.into_iter().map(|program| program.with(constant::MIXED, variant.mixed)).collect()
 }

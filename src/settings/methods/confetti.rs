@@ -10,7 +10,7 @@
 
 use super::{Method, PIXEL_FILTER};
 use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
-use crate::settings::{Alpha, Cull, Widen};
+use crate::settings::{Alpha, Cull, Edges, Widen};
 
 /// The preset, with the kernel of figure 18.
 pub const METHOD: Method = Method {
@@ -31,6 +31,7 @@ pub const METHOD: Method = Method {
     widen: Widen::All,
     cull: Cull::Auto,
     alpha: Alpha::Coverage,
+    edges: Edges::Mixed,
 };
 
 /// The preset as published, with the kernel of figure 18 and of its times: "parameters n = 3, a = 6.0, and b = 1.5" (§7). The paper gives no
@@ -57,5 +58,6 @@ pub const PAPER: Method = Method {
     // §6.2, there of nodes of the octree.
     cull: Cull::Back,
     alpha: Alpha::Mask,
+    edges: Edges::Nearest,
     ..METHOD
 };

@@ -17,7 +17,7 @@ pub mod sprites;
 
 use crate::settings::pull_push::PullPush;
 use crate::settings::splatting::Splatting;
-use crate::settings::{Alpha, Cull, Settings, Widen};
+use crate::settings::{Alpha, Cull, Edges, Settings, Widen};
 
 /// Variance of the pixel filter of our presets, px²: three quarters of a low-pass variance of 1. The rest, in the splats, has no effect on
 /// outlines.
@@ -46,6 +46,8 @@ pub struct Method {
     pub cull: Cull,
     /// See [`Settings::alpha`].
     pub alpha: Alpha,
+    /// See [`Settings::edges`].
+    pub edges: Edges,
 }
 
 impl Method {
@@ -91,6 +93,7 @@ impl Method {
             widen: self.widen,
             cull: self.cull,
             alpha: self.alpha,
+            edges: self.edges,
             ..Default::default()
         }
     }

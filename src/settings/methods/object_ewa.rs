@@ -15,7 +15,7 @@
 use super::{Method, PIXEL_FILTER};
 use crate::geometry::Camera;
 use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
-use crate::settings::{Alpha, Cull, Settings, Widen};
+use crate::settings::{Alpha, Cull, Edges, Settings, Widen};
 
 /// The preset.
 pub const METHOD: Method = Method {
@@ -37,6 +37,7 @@ pub const METHOD: Method = Method {
     widen: Widen::All,
     cull: Cull::Auto,
     alpha: Alpha::Coverage,
+    edges: Edges::Mixed,
 };
 
 /// The preset as published, of the higher quality: "refined by per-pixel normalization" (§8). That of higher speed needs surfels with
@@ -64,6 +65,7 @@ pub const PAPER: Method = Method {
     // §6.2, there of whole blocks.
     cull: Cull::Back,
     alpha: Alpha::Mask,
+    edges: Edges::Nearest,
     ..METHOD
 };
 

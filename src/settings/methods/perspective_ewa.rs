@@ -13,7 +13,7 @@
 
 use super::{Method, PIXEL_FILTER};
 use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
-use crate::settings::{Alpha, Cull, Widen};
+use crate::settings::{Alpha, Cull, Edges, Widen};
 
 /// The preset.
 pub const METHOD: Method = Method {
@@ -34,6 +34,7 @@ pub const METHOD: Method = Method {
     widen: Widen::Small,
     cull: Cull::Auto,
     alpha: Alpha::Coverage,
+    edges: Edges::Mixed,
 };
 
 /// The preset as published. The paper neither lights nor culls by facing: what it blends are the colours of splats (§3). It gives no number for
@@ -50,5 +51,6 @@ pub const PAPER: Method = Method {
     widen: Widen::All,
     cull: Cull::None,
     alpha: Alpha::Mask,
+    edges: Edges::Nearest,
     ..METHOD
 };

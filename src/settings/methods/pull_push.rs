@@ -10,7 +10,7 @@
 
 use super::{Method, perspective_ewa};
 use crate::settings::pull_push::{PullPush, Rules};
-use crate::settings::{Alpha, Cull};
+use crate::settings::{Alpha, Cull, Edges};
 
 /// The preset with robust rules.
 pub const METHOD: Method =
@@ -24,5 +24,6 @@ pub const PAPER: Method = Method {
     pixel_filter: 0.0,
     cull: Cull::Back,
     alpha: Alpha::Mask,
+    edges: Edges::Nearest,
     ..perspective_ewa::METHOD
 };

@@ -12,7 +12,7 @@
 
 use super::{Method, PIXEL_FILTER};
 use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
-use crate::settings::{Alpha, Cull, Widen};
+use crate::settings::{Alpha, Cull, Edges, Widen};
 
 /// The preset of higher quality.
 pub const METHOD: Method = Method {
@@ -33,6 +33,7 @@ pub const METHOD: Method = Method {
     widen: Widen::All,
     cull: Cull::Auto,
     alpha: Alpha::Coverage,
+    edges: Edges::Mixed,
 };
 
 /// The preset of higher speed.
@@ -47,6 +48,7 @@ pub const UNFILTERED: Method = Method {
     // Auto takes a visibility pass more.
     cull: Cull::Back,
     alpha: Alpha::Mask,
+    edges: Edges::Nearest,
     ..METHOD
 };
 
@@ -70,5 +72,6 @@ pub const PAPER: Method = Method {
     // §4: "we added a backface-culling method to the vertex shader".
     cull: Cull::Back,
     alpha: Alpha::Mask,
+    edges: Edges::Nearest,
     ..METHOD
 };

@@ -36,7 +36,7 @@ use crate::geometry::{Camera, Colours, Surfels};
 use crate::picture::Picture;
 use crate::settings::Outputs;
 use crate::settings::splatting::{Shade, Splatting};
-use crate::settings::{Alpha, Cull, Settings, Shading, Widen};
+use crate::settings::{Alpha, Cull, Edges, Settings, Shading, Widen};
 use crate::vk::PassTime;
 use clock::Stages;
 use pixels::Pixels;
@@ -67,6 +67,7 @@ pub fn settings(other: &Settings) -> Settings {
         widen: Widen::Small,
         cull: Cull::None,
         alpha: Alpha::Mask,
+        edges: Edges::Nearest,
         ..other.clone()
     }
 }

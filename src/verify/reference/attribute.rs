@@ -43,24 +43,19 @@ impl std::ops::AddAssign for Sums {
     }
 }
 
-/// Sums every pixel of the band over the splats that are no farther than `visible`.
+/// Sums every pixel of the band over the fragments of these ranks at a pixel.
 pub(super) fn pass(
     projector: &Projector,
     scene: &ProjectedScene,
     band: &Band,
-    visible: &[Rank],
+    counts: impl Fn(usize, Rank) -> bool,
 ) -> Vec<Sums> {
     let mut sums = vec![Sums::default(); band.len()];
     for splat in band.contributors(scene).iter() {
         let ellipse = Ellipse::attribute(splat, projector);
         band.inside(&ellipse, |hit| {
-            // A pixel that visibility left empty shows no surface, although the wider attribute footprint may reach
-            // it.
-            if !visible[hit.index].exists() {
-                return;
-            }
             let Some(depth) = projector.depth_of(splat, hit.at) else { return };
-            if hit.rank(depth) <= visible[hit.index] {
+            if counts(hit.index, hit.rank(depth)) {
                 sums[hit.index] += Sums::of(projector, splat, ellipse.weight(hit.in_kernel), depth);
             }
         });

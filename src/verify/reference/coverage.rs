@@ -4,13 +4,14 @@ use super::bands::Band;
 use super::ellipse::Ellipse;
 use super::error_model::ErrorModel;
 use super::projected_scene::ProjectedScene;
+use super::rank::Rank;
 use super::{Projector, Splat};
 use crate::settings::Alpha;
 use glam::DVec2;
 use std::ops::RangeInclusive;
 
 /// One bit per sample of a pixel.
-type Mask = u16;
+pub(super) type Mask = u16;
 
 /// Number of samples per pixel.
 pub(super) const SAMPLES: u32 = Mask::BITS;
@@ -34,7 +35,7 @@ const TOLERANCE: [f64; 2] = [3e-5, 8.0 / (1 << 24) as f64];
 const SEAM: f64 = 1.0 / 256.0;
 
 /// The part of a splat that is surface: its unfiltered ellipse, scaled by [`SOLID`].
-fn solid(splat: &Splat, projector: &Projector) -> Ellipse {
+pub(super) fn solid(splat: &Splat, projector: &Projector) -> Ellipse {
     let cutoff = SOLID * projector.cutoff();
     Ellipse { cutoff, ..Ellipse::new(splat, projector, |variance| variance.max(LEAST)) }
 }
@@ -46,7 +47,7 @@ fn distances(solid: &Ellipse, at: DVec2) -> [f64; 2] {
 }
 
 /// The samples that a splat covers in the pixel whose centre is at `offset` from the splat's centre.
-fn mask(solid: &Ellipse, offset: DVec2) -> Mask {
+pub(super) fn mask(solid: &Ellipse, offset: DVec2) -> Mask {
     let inside = |at: DVec2| {
         solid.rim(at) <= solid.cutoff && distances(solid, at).iter().all(|distance| *distance >= 0.0)
     };
@@ -68,7 +69,7 @@ fn nearest(offset: DVec2, tolerance: f64) -> impl Iterator<Item = u32> {
 }
 
 /// The samples that the splat certainly covers, and those that it may cover.
-fn certain_and_possible(solid: &Ellipse, offset: DVec2) -> [Mask; 2] {
+pub(super) fn certain_and_possible(solid: &Ellipse, offset: DVec2) -> [Mask; 2] {
     let tolerance = TOLERANCE[0] + TOLERANCE[1] * solid.cutoff * solid.sigma().x;
     // Inside, if the sample moves outwards (below 0) or inwards by `margin` px.
     let inside = |at: DVec2, margin: f64| {
@@ -95,19 +96,37 @@ pub(super) fn pass(projector: &Projector, scene: &ProjectedScene, band: &Band) -
     if projector.settings.drawn_alpha() == Alpha::Mask {
         return vec![1.0; band.len()];
     }
+    masks(projector, scene, band, |_, _| true).into_iter().map(part).collect()
+}
+
+/// The covered samples of each pixel of the band, by fragments of these ranks at a pixel.
+pub(super) fn masks(
+    projector: &Projector,
+    scene: &ProjectedScene,
+    band: &Band,
+    counts: impl Fn(usize, Rank) -> bool,
+) -> Vec<Mask> {
     let mut masks = vec![0; band.len()];
     for splat in band.occluders(scene).iter() {
         let (seen, solid) = (Ellipse::visibility(splat, projector), solid(splat, projector));
         band.inside(&seen, |hit| {
-            if masks[hit.index] != Mask::MAX && projector.depth_of(splat, hit.at).is_some() {
+            if masks[hit.index] == Mask::MAX {
+                return;
+            }
+            if projector.depth_of(splat, hit.at).is_some_and(|depth| counts(hit.index, hit.rank(depth))) {
                 masks[hit.index] |= mask(&solid, hit.offset);
             }
         });
     }
-    masks.into_iter().map(|mask| alpha(mask.count_ones())).collect()
+    masks
 }
 
-fn alpha(samples: u32) -> f64 {
+/// The part of a pixel that these samples are.
+pub(super) fn part(mask: Mask) -> f64 {
+    share(mask.count_ones())
+}
+
+fn share(samples: u32) -> f64 {
     f64::from(samples) / f64::from(Mask::BITS)
 }
 
@@ -132,10 +151,7 @@ impl SampleCounts {
             *certain |= if c.certain { samples[0] } else { 0 };
             *possible |= samples[1];
         });
-        masks
-            .into_iter()
-            .map(|[certain, possible]| Self(certain.count_ones()..=possible.count_ones()))
-            .collect()
+        masks.into_iter().map(Self::between).collect()
     }
 
     /// Whether the range has more than one number.
@@ -148,9 +164,14 @@ impl SampleCounts {
         self.0.clone().count()
     }
 
-    /// The α values of the range.
-    pub fn alphas(&self) -> impl Iterator<Item = f64> + use<> {
-        self.0.clone().map(alpha)
+    /// Counts between those of the certainly and of the possibly covered samples.
+    pub fn between([certain, possible]: [Mask; 2]) -> Self {
+        Self(certain.count_ones()..=possible.count_ones())
+    }
+
+    /// The parts of a pixel that the counts of the range are.
+    pub fn parts(&self) -> impl Iterator<Item = f64> + use<> {
+        self.0.clone().map(share)
     }
 }
 

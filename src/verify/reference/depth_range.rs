@@ -29,11 +29,6 @@ impl DepthRange {
         Self { low: self.low.min(other.low), high: self.high.min(other.high) }
     }
 
-    /// Whether the whole range lies beyond a clip line.
-    pub fn is_clipped(&self) -> bool {
-        self.low.clipped && self.high.clipped
-    }
-
     /// Whether a splat of this rank may pass the depth test; `tolerance` is the error of its depth.
     pub fn may_pass(&self, rank: Rank, tolerance: f64) -> bool {
         self.exists() && rank <= self.high.farther(tolerance)
@@ -56,12 +51,23 @@ pub(super) struct DepthRanges {
 impl DepthRanges {
     /// Finds the depths of a band.
     pub fn new(model: &ErrorModel, scene: &ProjectedScene, band: &Band) -> Self {
+        Self::over(model, scene, band, |c| Some(c.certain))
+    }
+
+    /// Finds the depths over those splats of a band that `counts`, given whether they certainly count.
+    pub fn over(
+        model: &ErrorModel,
+        scene: &ProjectedScene,
+        band: &Band,
+        counts: impl Fn(&Candidate) -> Option<bool>,
+    ) -> Self {
         let mut certain = vec![DepthRange::NONE; band.len()];
         let mut possible: HashMap<usize, Vec<DepthRange>> = HashMap::new();
         model.scan(band, &band.occluders(scene), Ellipse::visibility, |c| {
+            let Some(is_certain) = counts(&c) else { return };
             let rank = c.rank(occlusion_depth(model.projector, c.splat, c.depth));
             let range = DepthRange { low: rank.farther(-c.depth_error), high: rank.farther(c.depth_error) };
-            if c.certain {
+            if is_certain {
                 certain[c.pixel] = certain[c.pixel].min(range);
             } else {
                 possible.entry(c.pixel).or_default().push(range);
@@ -79,6 +85,25 @@ impl DepthRanges {
     /// All possible depths of a pixel.
     pub fn of(&self, pixel: usize) -> impl Iterator<Item = DepthRange> {
         std::iter::once(self.certain[pixel]).chain(self.possible.get(&pixel).into_iter().flatten().copied())
+    }
+
+    /// Whether the splat passes whatever the depth is.
+    pub fn certainly_passes(&self, c: &Candidate) -> bool {
+        c.certain && self.of(c.pixel).all(|b| b.must_pass(c.rank(c.depth), c.depth_tolerance()))
+    }
+
+    /// Whether a splat may be behind, and whether it is certainly behind, whatever the depth is.
+    pub fn test_behind(&self, c: &Candidate) -> (bool, bool) {
+        let (rank, tolerance) = (c.rank(c.depth), c.depth_tolerance());
+        let mut existing = self.of(c.pixel).filter(DepthRange::exists).peekable();
+        let exists = existing.peek().is_some();
+        let mut may = false;
+        let mut must = exists && self.of(c.pixel).all(|b| b.exists());
+        for depth in existing {
+            may |= !depth.must_pass(rank, tolerance);
+            must &= !depth.may_pass(rank, tolerance);
+        }
+        (may, must)
     }
 
     /// Whether the splat passes at some possible depth, and whether it both passes and fails at one.

@@ -9,6 +9,8 @@
 use super::Projector;
 use super::attribute::Sums;
 use super::bands::{Band, Bands};
+use super::behind::mixed;
+use super::behind_bounds::BehindBounds;
 use super::coverage::SampleCounts;
 use super::depth_range::{DepthRange, DepthRanges};
 use super::ellipse::Ellipse;
@@ -54,11 +56,18 @@ enum AmbiguousPixel {
 /// An ambiguous pixel at which splats are blended.
 struct Blended {
     at: DVec2,
+    nearest: Blend,
+    covered: SampleCounts,
+    /// The surface behind, and the samples that the nearest surface may cover.
+    behind: Option<(Blend, SampleCounts)>,
+}
+
+/// The splats of a surface at a pixel.
+struct Blend {
     /// The possible visibility depths.
     depths: Vec<DepthRange>,
     /// The splats that may be summed at one of them.
     fragments: Vec<Fragment>,
-    covered: SampleCounts,
 }
 
 /// A splat at a pixel.
@@ -127,22 +136,20 @@ impl AmbiguousPixel {
             Self::Blended(pixel) => Box::new(pixel.values(projector)),
             Self::Nearest(at, contributions, covered) => {
                 Box::new(contributions.iter().flat_map(move |contribution| {
-                    let rounding = contribution
-                        .map_or(RoundingBound::default(), |contribution| contribution.rounding_sums.bound());
-                    let sums = contribution.as_ref().map(|contribution| &contribution.sums);
-                    covered.alphas().map(move |alpha| (resolve(projector, *at, sums, alpha), rounding))
+                    covered.parts().map(move |alpha| value_of(projector, *at, *contribution, alpha))
                 }))
             }
         }
     }
 }
 
-impl Blended {
+impl Blend {
     /// Splits the fragments that `depth` admits: the sum of the certain ones, and those that may pass.
     fn split(&self, bound: DepthRange) -> (Contribution, Vec<Contribution>) {
         let (mut certain, mut possible) = (Contribution::default(), Vec::new());
-        // A splat on a clip line has two fragments there; the clipped one stands for both.
-        let counted_twice = |f: &Fragment| f.or_clipped && bound.is_clipped();
+        // A splat on a clip line has two fragments there; the clipped one stands for both, where it may pass.
+        let clipped = |f: &Fragment| Rank { clipped: true, ..f.rank };
+        let counted_twice = |f: &Fragment| f.or_clipped && bound.may_pass(clipped(f), f.tolerance);
         for f in self.fragments.iter().filter(|f| bound.may_pass(f.rank, f.tolerance) && !counted_twice(f)) {
             if f.certain && bound.must_pass(f.rank, f.tolerance) {
                 certain += f.contribution;
@@ -156,24 +163,56 @@ impl Blended {
     fn outcomes(&self) -> usize {
         let subsets =
             |&bound: &DepthRange| 1usize.checked_shl(self.split(bound).1.len() as u32).unwrap_or(usize::MAX);
-        let sums = self.depths.iter().map(subsets).fold(0, usize::saturating_add);
-        sums.saturating_mul(self.covered.len())
+        self.depths.iter().map(subsets).fold(0, usize::saturating_add)
     }
 
-    fn values<'a>(&'a self, projector: &'a Projector) -> impl Iterator<Item = (Value, RoundingBound)> + 'a {
+    /// The possible contributions of its splats together; none where visibility wrote no depth.
+    fn contributions(&self) -> impl Iterator<Item = Option<Contribution>> {
         self.depths.iter().flat_map(move |&bound| {
             let (certain, possible) = self.split(bound);
-            (0..1 << possible.len()).flat_map(move |subset: usize| {
+            (0..1 << possible.len()).map(move |subset: usize| {
                 let mut all = certain;
                 let taken = possible.iter().enumerate().filter(|(bit, _)| subset >> bit & 1 == 1);
                 taken.for_each(|(_, contribution)| all += *contribution);
-                let rounding = all.rounding_sums.bound();
-                let value =
-                    move |alpha: f64| resolve(projector, self.at, bound.exists().then_some(&all.sums), alpha);
-                self.covered.alphas().map(move |alpha| (value(alpha), rounding))
+                bound.exists().then_some(all)
             })
         })
     }
+}
+
+impl Blended {
+    fn outcomes(&self) -> usize {
+        let behind = self.behind.as_ref();
+        let of_behind = behind.map_or(1, |(blend, counts)| blend.outcomes().saturating_mul(counts.len()));
+        self.nearest.outcomes().saturating_mul(self.covered.len()).saturating_mul(of_behind)
+    }
+
+    fn values<'a>(&'a self, projector: &'a Projector) -> impl Iterator<Item = (Value, RoundingBound)> + 'a {
+        self.nearest.contributions().flat_map(move |nearest| {
+            self.covered.parts().flat_map(move |alpha| {
+                let value = value_of(projector, self.at, nearest, alpha);
+                let behind = self.behind.iter().flat_map(move |(blend, counts)| {
+                    blend.contributions().flat_map(move |behind| {
+                        let (behind, bound) = value_of(projector, self.at, behind, alpha);
+                        let shares = counts.parts().map(move |part| (part / alpha).min(1.0));
+                        shares.map(move |share| (mixed(value.0, &behind, share), value.1.max(bound)))
+                    })
+                });
+                self.behind.is_none().then_some(value).into_iter().chain(behind)
+            })
+        })
+    }
+}
+
+/// The value of a pixel by the splats that contribute, with its rounding bound.
+fn value_of(
+    projector: &Projector,
+    at: DVec2,
+    contribution: Option<Contribution>,
+    alpha: f64,
+) -> (Value, RoundingBound) {
+    let rounding = contribution.map_or(RoundingBound::default(), |all| all.rounding_sums.bound());
+    (resolve(projector, at, contribution.as_ref().map(|all| &all.sums), alpha), rounding)
 }
 
 /// Ambiguous pixels and rounding bounds of one band. Scans the attribute footprints twice: first to mark the pixels,
@@ -184,48 +223,70 @@ fn of_band(
     band: &Band,
 ) -> (Vec<(usize, AmbiguousPixel)>, Vec<RoundingBound>) {
     let bounds = DepthRanges::new(model, scene, band);
-    let mut ambiguous: Vec<Option<Vec<Fragment>>> = Vec::new();
+    let behind =
+        model.projector.settings.mixes_edges().then(|| BehindBounds::new(model, scene, band, &bounds));
+    // Splats of the nearest surface, and of the one behind.
+    let mut ambiguous: Vec<Option<[Vec<Fragment>; 2]>> = Vec::new();
     ambiguous.resize_with(band.len(), || None);
     let covered = SampleCounts::of_band(model, scene, band);
-    let varying = (0..band.len()).filter(|&pixel| covered[pixel].is_ambiguous());
-    for pixel in bounds.possible.keys().copied().chain(varying) {
-        ambiguous[pixel] = Some(Vec::new());
+    let varies = |pixel: usize| {
+        covered[pixel].is_ambiguous() || behind.as_ref().is_some_and(|behind| behind.is_ambiguous(pixel))
+    };
+    for pixel in bounds.possible.keys().copied().chain((0..band.len()).filter(|pixel| varies(*pixel))) {
+        ambiguous[pixel] = Some(Default::default());
     }
-    let mut rounding_sums = vec![RoundingSums::default(); band.len()];
+    let test = |c: &Candidate| {
+        let of_behind = behind.as_ref().map_or((false, false), |behind| behind.test(c, &bounds));
+        [bounds.test(c), of_behind]
+    };
+    let mut rounding_sums = vec![[RoundingSums::default(); 2]; band.len()];
     model.scan(band, &band.contributors(scene), Ellipse::attribute, |c| {
-        let (passes, is_ambiguous) = bounds.test(&c);
-        if is_ambiguous {
-            ambiguous[c.pixel].get_or_insert_default();
-        }
-        if passes {
-            rounding_sums[c.pixel] += RoundingSums::of(model, &c);
+        for (surface, (passes, is_ambiguous)) in test(&c).into_iter().enumerate() {
+            if is_ambiguous {
+                ambiguous[c.pixel].get_or_insert_default();
+            }
+            if passes {
+                rounding_sums[c.pixel][surface] += RoundingSums::of(model, &c);
+            }
         }
     });
     model.scan(band, &band.contributors(scene), Ellipse::attribute, |c| {
-        if let Some(fragments) = &mut ambiguous[c.pixel]
-            && bounds.test(&c).0
-        {
-            let sums = Sums::of(model.projector, c.splat, c.weight, c.depth);
-            let contribution = Contribution { sums, rounding_sums: RoundingSums::of(model, &c) };
-            let (rank, tolerance) = (c.rank(c.depth), c.depth_tolerance());
-            fragments.push(Fragment {
-                rank,
-                tolerance,
-                contribution,
-                certain: c.certain,
-                or_clipped: c.or_clipped,
-            });
+        let Some(fragments) = &mut ambiguous[c.pixel] else { return };
+        let [(is_nearest, _), (is_behind, may_be_elsewhere)] = test(&c);
+        if is_nearest {
+            fragments[0].push(Fragment::of(model, &c, c.certain));
+        }
+        if is_behind {
+            fragments[1].push(Fragment::of(model, &c, c.certain && !may_be_elsewhere));
         }
     });
     let first = band.first_row as usize * band.width as usize;
-    let pixel = |(i, fragments): (usize, Option<Vec<Fragment>>)| {
-        let depths = bounds.of(i).collect();
-        let covered = covered[i].clone();
-        let pixel = Blended { at: band.centre(i), depths, fragments: fragments?, covered };
+    let pixel = |(i, fragments): (usize, Option<[Vec<Fragment>; 2]>)| {
+        let [nearest, of_behind] = fragments?;
+        let behind = behind
+            .as_ref()
+            .filter(|behind| behind.may_show(i))
+            .map(|behind| (Blend { depths: behind.of(i).collect(), fragments: of_behind }, behind.counts(i)));
+        let nearest = Blend { depths: bounds.of(i).collect(), fragments: nearest };
+        let pixel = Blended { at: band.centre(i), nearest, covered: covered[i].clone(), behind };
         Some((first + i, AmbiguousPixel::Blended(pixel)))
     };
-    let rounding = rounding_sums.iter().map(RoundingSums::bound).collect();
+    let rounding =
+        rounding_sums.iter().map(|[nearest, behind]| nearest.bound().max(behind.bound())).collect();
     (ambiguous.into_iter().enumerate().filter_map(pixel).collect(), rounding)
+}
+
+impl Fragment {
+    fn of(model: &ErrorModel, c: &Candidate, certain: bool) -> Self {
+        let sums = Sums::of(model.projector, c.splat, c.weight, c.depth);
+        Self {
+            rank: c.rank(c.depth),
+            tolerance: c.depth_tolerance(),
+            contribution: Contribution { sums, rounding_sums: RoundingSums::of(model, c) },
+            certain,
+            or_clipped: c.or_clipped,
+        }
+    }
 }
 
 /// The same where the nearest splat is shown alone.

@@ -35,6 +35,8 @@ pub(super) struct Candidate<'a> {
     pub clipped: bool,
     /// Whether the splat is clipped if it is not here; the clipped fragment is a second candidate.
     pub or_clipped: bool,
+    /// Whether the splat is kept if it is not here; the kept fragment is the first candidate.
+    pub or_kept: bool,
 }
 
 impl Candidate<'_> {
@@ -63,6 +65,8 @@ struct Side {
     near: bool,
     /// See [`Candidate::or_clipped`].
     or_clipped: bool,
+    /// See [`Candidate::or_kept`].
+    or_kept: bool,
 }
 
 /// The sides of the clip lines on which a splat may lie. `distance` is the signed distance to the clipped part;
@@ -72,9 +76,9 @@ fn sides(distance: f64, reach: f64) -> impl Iterator<Item = Side> {
     let at_reach = (distance + reach).abs() <= CUTOFF_TOLERANCE;
     let may_be_kept = distance >= -CUTOFF_TOLERANCE;
     let may_be_clipped = reach > 0.0 && distance <= CUTOFF_TOLERANCE && distance >= -reach - CUTOFF_TOLERANCE;
-    let kept = Side { clipped: false, near: on_line, or_clipped: on_line && reach > 0.0 };
+    let kept = Side { clipped: false, near: on_line, or_clipped: on_line && reach > 0.0, or_kept: false };
     // A centre on a line has at least the clipped fragment.
-    let clipped = Side { clipped: true, near: at_reach, or_clipped: false };
+    let clipped = Side { clipped: true, near: at_reach, or_clipped: false, or_kept: on_line };
     may_be_kept.then_some(kept).into_iter().chain(may_be_clipped.then_some(clipped))
 }
 
@@ -124,6 +128,7 @@ impl ErrorModel<'_> {
                         certain: splat.certain && certain && !near_rim && !side.near && beyond > unsure,
                         clipped: side.clipped,
                         or_clipped: side.or_clipped,
+                        or_kept: side.or_kept,
                     });
                 }
             });

@@ -2,7 +2,7 @@
 //!
 //! Its functions are named as the GPU passes and share no code with them. [`Projector::footprint`] projects a surfel to
 //! a splat, `sides` drops those of the far side of closed surfaces, `visibility` finds the depth up to which splats are blended, `coverage` the covered fraction of each pixel.
-//! `attribute` sums the visible splats, or `nearest` takes the first one; `normalize` divides and shades, `filter` filters.
+//! `attribute` sums the visible splats, or `nearest` takes the first one; `normalize` divides and shades, `behind` mixes the surface behind into pixels at edges, `filter` filters.
 //! [`ErrorBounds`] finds the pixels that float32 rounding can change, with every value they may take, from the float64
 //! frame alone; [`compare`] applies both.
 //!
@@ -11,6 +11,8 @@
 
 mod attribute;
 mod bands;
+mod behind;
+mod behind_bounds;
 mod compare;
 mod conic;
 mod coverage;
@@ -154,8 +156,12 @@ fn values(projector: &Projector, scene: &ProjectedScene, band: &Band) -> Vec<Val
         return normalize::pass_nearest(projector, band, &nearest::pass(projector, scene, band), &alpha);
     }
     let depth = visibility::pass(projector, scene, band);
-    let sums = attribute::pass(projector, scene, band, &depth);
-    normalize::pass(projector, band, &depth, &sums, &alpha)
+    let sums = attribute::pass(projector, scene, band, |pixel, rank| rank.is_within(depth[pixel]));
+    let values = normalize::pass(projector, band, &depth, &sums, &alpha);
+    match projector.settings.mixes_edges() {
+        true => behind::pass(projector, scene, band, &depth, &alpha, values),
+        false => values,
+    }
 }
 
 /// Runs all passes band by band: beside splats and picture, only the sums of the current bands take memory.

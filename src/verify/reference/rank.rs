@@ -17,6 +17,12 @@ impl Rank {
         self.depth.is_finite()
     }
 
+    /// Whether a fragment of this rank is within a depth of visibility. A pixel that visibility left empty shows no surface, although the
+    /// wider footprint of attribute may reach it.
+    pub fn is_within(self, visible: Self) -> bool {
+        visible.exists() && self <= visible
+    }
+
     /// The nearer of two.
     pub fn min(self, other: Self) -> Self {
         if other < self { other } else { self }

@@ -17,6 +17,18 @@ pub struct RoundingBound {
     pub normal_sum: f64,
 }
 
+impl RoundingBound {
+    /// The larger of two bounds, one by one: a bound of mixed values.
+    pub(super) fn max(self, other: Self) -> Self {
+        Self {
+            depth: self.depth.max(other.depth),
+            attribute: self.attribute.max(other.attribute),
+            normal_gain: self.normal_gain.max(other.normal_gain),
+            normal_sum: self.normal_sum.max(other.normal_sum),
+        }
+    }
+}
+
 /// Half a unit in the last place of a float32 near 1.
 const HALF_UNIT: f64 = 1.0 / (1 << 24) as f64;
 /// Rounding error of a sum of a few floats, relative to the sum of their magnitudes, in half units in the last place.

@@ -21,6 +21,7 @@ pub fn show(ui: &mut Ui, choices: &mut Choices<'_>) {
     ui.checkbox(&mut smooth, "smooth outlines")
         .on_hover_text("α is the fraction of a pixel that surfaces cover, in sixteenths; otherwise it is whether a surface covers its centre.");
     settings.alpha = if smooth { Alpha::Coverage } else { Alpha::Mask };
+    choice_combo(ui, "edges", &mut settings.edges, None);
     culling(ui, settings);
     ui.checkbox(choices.parallel, "parallel projection")
         .on_hover_text("Objects at the pivot's distance keep their size.");

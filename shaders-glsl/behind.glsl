@@ -1,0 +1,154 @@
+// Behind: mixes the surface behind into pixels at edges, whose nearest surface leaves some of the covered samples to other splats. The nearest of
+// these, and what is within its ε, shows in all of them.
+#version 450
+#pragma variant SUBGROUPS COMPUTE
+#pragma variant MIX COMPUTE
+#pragma variant NEAREST_SAMPLES FRAGMENT
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "lib/tile_pass.glsl"
+
+#if defined(COMPUTE) && !defined(MIX)
+
+#define BEHIND
+#define VISIBILITY_STEPS 1
+#define COVERAGE_STEPS 12000
+#define BEHIND_STEPS 24000
+#define ATTRIBUTE_STEPS 26000
+#include "lib/frame.glsl"
+#define IMAGE_ACCESS
+#include "lib/picture_pixel.glsl"
+#include "lib/splat.glsl"
+#include "lib/pixels.glsl"
+#include "lib/tile.glsl"
+
+// The passes of surface run separately: the samples of the nearest surface are not known yet, nor the tiles with edges.
+layout(constant_id = 73) const bool SPLIT = false;
+
+layout(set = 1, binding = 5, std430) readonly buffer Coverage { uint coverage[]; };
+
+float nearest_depths[ROWS]; // of the nearest surface, where `depths` are of the surface behind
+uint full_pixels = 0;
+
+#include "lib/tile_coverage.glsl"
+#include "lib/tile_behind.glsl"
+#include "lib/tile_attribute.glsl"
+#include "lib/edge_tiles.glsl"
+#include "lib/mix_behind.glsl"
+
+void load_pixels(uvec2 origin) {
+    for (uint r = 0; r < ROWS; r++) {
+        uvec2 pixel = origin + lane_pixel(r);
+        uint index = is_in_viewport(pixel) ? pixel_index(ivec2(pixel)) : 0;
+        uint samples = is_in_viewport(pixel) ? coverage[index] : 0;
+        depths[r] = is_in_viewport(pixel) ? uintBitsToFloat(visibility[index] & ~FULL_PIXEL) : 0.0;
+        coverage_masks[r] = samples & ALL_SAMPLES;
+        nearest_masks[r] = samples >> SAMPLES;
+    }
+}
+
+// Sets the free samples of rows from the masks of pixels.
+void find_free_samples() {
+    uint masks[ROWS], row_masks[TILE];
+    for (uint r = 0; r < ROWS; r++) masks[r] = coverage_masks[r] & ~nearest_masks[r];
+    GATHER_ROW(uint, masks, row_masks)
+    uint columns = 0;
+    for (uint w = 0; w < SAMPLE_WORDS; w++) row_free[w] = 0;
+    for (uint x = 0; x < TILE; x++) {
+        columns |= uint(row_masks[x] != 0) << x;
+        for (uint j = 0; j < LANE_SAMPLES; j++) {
+            row_free[j / 4] |= (row_masks[x] >> lane / TILE * LANE_SAMPLES + j & 1u) << 8 * (j % 4) + x;
+        }
+    }
+    incomplete_pixels = pixels_of_rows(columns);
+}
+
+void main() {
+    load_frame();
+    uvec2 origin = SPLIT ? tile_origin() : LISTED_ORIGIN(edges);
+    load_pixels(origin);
+    if (SPLIT) {
+        visited_count = MOST_VISITED + 1;
+        compute_coverage(origin);
+    } else {
+        GATHER_ROW(float, depths, row_depths)
+    }
+    find_free_samples();
+    compute_behind(origin);
+    sum_attributes(origin);
+    for (uint r = 0; r < ROWS; r++) {
+        ivec2 pixel = ivec2(origin + lane_pixel(r));
+        if (depths[r] > 0.0) mix_behind(pixel, coverage_masks[r], nearest_masks[r], tile_sums0[r], tile_sums1[r]);
+    }
+}
+
+#endif
+
+#ifndef COMPUTE
+
+// On the raster path: first the samples of the nearest surface, then the depths of the surface behind, its sums by pass attribute, and MIX.
+
+#define COVERAGE
+#define VERTICES 3
+#include "lib/instance.glsl"
+#define CLIP_ACCESS readonly
+#include "lib/splat.glsl"
+#include "lib/coverage.glsl"
+#include "lib/draw_splat.glsl"
+
+#endif
+#ifdef VERTEX
+
+void main() {
+    uint i = surfel_index();
+    Splat splat = splat_of(i);
+    write_splat_vertex(i, splat, visibility_variance(variance_of(splat)), gl_VertexIndex % 3);
+}
+
+#endif
+#ifdef FRAGMENT
+
+layout(set = 1, binding = 9) uniform texture2D visibility_image;
+
+void main() {
+    vec2 m;
+    float key, rank;
+    evaluate_fragment(m, key, rank);
+    float nearest_depth = texelFetch(visibility_image, ivec2(gl_FragCoord.xy), 0).r;
+    bool is_behind = ranked(key, rank) < nearest_depth;
+    uint samples = coverage[fragment_index()];
+#ifdef NEAREST_SAMPLES
+    if (!is_behind) atomicOr(coverage[fragment_index()], fragment_mask() << SAMPLES);
+    discard;
+#else
+    uint free = samples & ALL_SAMPLES & ~(samples >> SAMPLES);
+    if (!is_behind || (fragment_mask() & free) == 0) discard;
+    gl_FragDepth = ranked(visibility_key(key, plane_lo_disc.w, plane_epsilon.w), rank);
+#endif
+}
+
+#endif
+#if defined(COMPUTE) && defined(MIX)
+
+#define IMAGE_ACCESS
+#include "lib/frame.glsl"
+#include "lib/picture_pixel.glsl"
+#include "lib/pixel_group.glsl"
+#include "lib/lattice.glsl"
+#include "lib/mix_behind.glsl"
+
+layout(set = 1, binding = 5, std430) readonly buffer Coverage { uint coverage[]; };
+layout(set = 1, binding = 10) uniform texture2D sums0_image;
+layout(set = 1, binding = 11) uniform texture2D sums1_image;
+layout(set = 1, binding = 26) uniform texture2D behind_image;
+
+void main() {
+    load_frame();
+    ivec2 pixel = invocation_pixel(), size = picture_size();
+    if (any(greaterThanEqual(pixel, size)) || texelFetch(behind_image, pixel, 0).r == 0.0) return;
+    uint samples = coverage[pixel.y * size.x + pixel.x];
+    vec4 s1 = SUM_DEPTH || WIDE_SUMS1 ? texelFetch(sums1_image, pixel, 0) : vec4(0.0);
+    mix_behind(pixel, samples & ALL_SAMPLES, samples >> SAMPLES, texelFetch(sums0_image, pixel, 0), s1);
+}
+
+#endif

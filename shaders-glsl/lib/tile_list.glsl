@@ -1,0 +1,50 @@
+// Lists of tiles for indirect dispatches of a workgroup per tile: pass open lists the marked ones.
+
+#ifndef LIB_TILE_LIST
+#define LIB_TILE_LIST
+
+#include "lib/tile_size.glsl"
+
+struct ListedTile {
+    uint key;    // of each tile, row by row: MARKED, or below
+    uint listed; // the marked tiles, in any order: x in the lower 16 bits, y in the upper ones
+};
+
+// A list, after the workgroups of an indirect dispatch of one per listed tile, column by column.
+#define TILE_LIST(BLOCK, NAME, BINDING)                          \
+    layout(set = 1, binding = BINDING, std430) buffer BLOCK {    \
+        uint columns;                                            \
+        uint rows;                                               \
+        uint layers;                                             \
+        uint listed_count;                                       \
+        uint all; /* 1: all tiles are listed */                  \
+        ListedTile tiles[];                                      \
+    } NAME;
+
+// First pixel of the workgroup's tile in a list; outside the viewport in workgroups beyond the list.
+#define LISTED_ORIGIN(NAME) \
+    (list_place() < NAME.listed_count ? origin_of(NAME.tiles[list_place()].listed) : uvec2(1u << 30))
+
+// The tile is marked. As a float it is not a number.
+const uint MARKED = ~0u;
+// Most columns of the dispatch, which every device allows.
+const uint MOST_COLUMNS = 32768;
+
+uvec2 tile_counts() {
+    return (uvec2(frame.viewport) + TILE - 1) / TILE;
+}
+
+uint tile_index(uvec2 tile) {
+    return tile.y * tile_counts().x + tile.x;
+}
+
+// Place of the workgroup in the list.
+uint list_place() {
+    return gl_WorkGroupID.x * gl_NumWorkGroups.y + gl_WorkGroupID.y;
+}
+
+uvec2 origin_of(uint listed) {
+    return TILE * uvec2(listed & 0xffffu, listed >> 16);
+}
+
+#endif
