@@ -61,6 +61,12 @@ pub(super) fn normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Option<
     normals
 }
 
+/// The normal of a triangle by the order of its corners, twice as long as its area is large.
+pub(super) fn area_vector(positions: &[Vec3], corners: [u32; 3]) -> DVec3 {
+    let [a, b, c] = corners.map(|i| positions[i as usize].as_dvec3());
+    (b - a).cross(c - a)
+}
+
 fn corners(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Corner> {
     let mut corners = vec![Corner::default(); positions.len()];
     for triangle in triangles {

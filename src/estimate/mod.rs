@@ -6,6 +6,7 @@ mod creases;
 mod curvature;
 mod draft;
 mod eigen;
+mod face_samples;
 mod faces;
 mod facets;
 mod lines;
@@ -119,6 +120,8 @@ pub struct Estimated {
     pub radii_from_neighbours: u64,
     /// Points removed because no face of their mesh uses them.
     pub unused: u64,
+    /// Vertices of uneven meshes, which ellipses on their triangles replace.
+    pub vertices_replaced: u64,
     /// Points removed as outliers.
     pub outliers: u64,
     /// Surfels clipped at detected creases.
@@ -146,6 +149,7 @@ impl Add for Estimated {
             radii_from_faces: self.radii_from_faces + other.radii_from_faces,
             radii_from_neighbours: self.radii_from_neighbours + other.radii_from_neighbours,
             unused: self.unused + other.unused,
+            vertices_replaced: self.vertices_replaced + other.vertices_replaced,
             outliers: self.outliers + other.outliers,
             clipped: self.clipped + other.clipped,
             bounded: self.bounded + other.bounded,
@@ -181,6 +185,7 @@ impl Cloud {
         draft.count_given();
         progress.check_cancelled()?;
         faces::fill(&mut draft, how);
+        face_samples::replace(&mut draft, how);
         progress.check_cancelled()?;
         let lacks_anything = draft.lacks_anything();
         let sites = (lacks_anything || how.outlines)
@@ -225,6 +230,7 @@ mod tests {
             radii_given: 5,
             radii_from_faces: 6,
             radii_from_neighbours: 7,
+            vertices_replaced: 15,
             outliers: 8,
             clipped: 9,
             unused: 14,
@@ -241,6 +247,7 @@ mod tests {
             radii_given: 10,
             radii_from_faces: 12,
             radii_from_neighbours: 14,
+            vertices_replaced: 30,
             outliers: 16,
             clipped: 18,
             unused: 28,

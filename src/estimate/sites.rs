@@ -58,7 +58,7 @@ impl Sites {
 }
 
 /// The site of each point, and the first point of each site. Equal positions share a site.
-fn distinct(positions: &[Vec3]) -> (Vec<u32>, Vec<u32>) {
+pub(super) fn distinct(positions: &[Vec3]) -> (Vec<u32>, Vec<u32>) {
     // -0 becomes 0, so that equal numbers have equal bits.
     let bits = |p: Vec3| (p + 0.0).to_array().map(f32::to_bits);
     let mut order: Vec<([u32; 3], u32)> =

@@ -237,7 +237,8 @@ impl Variant {
     /// The variant with sliced dispatches, on the tile path.
     pub fn with_slices(self, sliced: bool) -> Self {
         let sliced = sliced && self.is_tiled();
-        Self { sliced, split: self.split || sliced, ..self }
+        // Pass behind visits all splats of a tile in one dispatch.
+        Self { sliced, split: self.split || sliced, mixed: self.mixed && !sliced, ..self }
     }
 
     /// Whether splats take the tile path.

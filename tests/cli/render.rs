@@ -217,7 +217,8 @@ fn a_turntable_begins_with_the_ordinary_picture_and_turns_around() {
     else {
         return;
     };
-    let common = "render scene:helix --size 64x48 --validate -q --eye 0,1,6 --target 0,0,0";
+    // Of so many surfels on few pixels the reference alone shows two surfaces at edges.
+    let common = "render scene:helix --size 64x48 --edges nearest --validate -q --eye 0,1,6 --target 0,0,0";
     program.run(&format!("{common} -o one.png")).text();
     program.run(&format!("{common} --turntable 4 -o turn-%02d.png")).text();
     let files = ["one.png", "turn-00.png", "turn-01.png", "turn-02.png", "turn-03.png"];

@@ -139,7 +139,7 @@ fn passes_and_targets_match_the_plan() {
             let plan = FramePlan::new(&[scene.streams()], true, &settings, &options, rasterizer);
             let mut planned = plan.passes;
             // Passes of one name share a timer.
-            for again in ["footprint", "boxes", "visibility", "surface", "open"] {
+            for again in ["footprint", "boxes", "visibility", "surface", "open", "attribute", "behind"] {
                 if planned.iter().filter(|pass| **pass == again).count() > 1 {
                     let last = planned.iter().rposition(|pass| *pass == again).unwrap();
                     planned.remove(last);

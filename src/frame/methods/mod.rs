@@ -10,7 +10,7 @@ use super::passes::filter::FILTER;
 use super::passes::open::EDGES;
 use super::passes::order::ORDER;
 use super::passes::sides::SIDES;
-use super::passes::{behind, boxes, visibility};
+use super::passes::{attribute, behind, boxes, visibility};
 use super::variant::Variant;
 use crate::settings::Rasterizer;
 use crate::settings::splatting::Visibility;
@@ -67,7 +67,12 @@ fn behind(path: Path, split: bool) -> Vec<&'static Pass> {
         Path::Compute if split => vec![&behind::COMPUTE],
         Path::Compute => vec![&EDGES, &behind::COMPUTE],
         Path::Raster => {
-            vec![&behind::RASTER_SAMPLES, &behind::RASTER_DEPTHS, &behind::RASTER_SUMS, &behind::RASTER_MIX]
+            vec![
+                &behind::RASTER_SAMPLES,
+                &behind::RASTER_DEPTHS,
+                &attribute::RASTER_BEHIND,
+                &behind::RASTER_MIX,
+            ]
         }
         // A host's subpasses have no pass after them.
         Path::Subpasses { .. } => Vec::new(),

@@ -3,11 +3,12 @@
 use super::tiles;
 use crate::frame::pass::{Commands, Domain, DrawTargets, InitialContents, Pass, Program, Programs};
 use crate::frame::resource::Resource::{
-    Attributes, Boxes, IncompleteFrame, ScreenClips, Splats, Sums0, Sums1, Visibility,
+    Attributes, Behind, Boxes, IncompleteFrame, ScreenClips, Splats, Sums0, Sums1, Visibility,
 };
 use crate::vk::shaders::{
-    ATTRIBUTE_CLIP_LINES_FRAGMENT, ATTRIBUTE_CLIP_LINES_VERTEX, ATTRIBUTE_COMPUTE, ATTRIBUTE_FRAGMENT,
-    ATTRIBUTE_SUBGROUPS_COMPUTE, ATTRIBUTE_VERTEX,
+    ATTRIBUTE_BEHIND_CLIP_LINES_FRAGMENT, ATTRIBUTE_BEHIND_FRAGMENT, ATTRIBUTE_CLIP_LINES_FRAGMENT,
+    ATTRIBUTE_CLIP_LINES_VERTEX, ATTRIBUTE_COMPUTE, ATTRIBUTE_FRAGMENT, ATTRIBUTE_SUBGROUPS_COMPUTE,
+    ATTRIBUTE_VERTEX,
 };
 use crate::vk::{Blend, DepthTest, Topology};
 
@@ -38,6 +39,29 @@ pub static RASTER: Pass = Pass {
     commands: Commands::Draws(DrawTargets {
         colours: &[(Sums0, InitialContents::Cleared), (Sums1, InitialContents::Cleared)],
         depth: Some((Visibility, InitialContents::Tested)),
+        topology: Topology::Triangles,
+        test: DepthTest::NotBehind,
+        blend: Blend::Add,
+    }),
+};
+
+/// The same for the surface behind, within the depths of pass behind.
+pub static RASTER_BEHIND: Pass = Pass {
+    name: "attribute",
+    reads: &[Splats, ScreenClips, Visibility],
+    writes: &[],
+    clears: &[],
+    programs: Programs::OfScene(|variant| {
+        let modules = if variant.clips {
+            [&ATTRIBUTE_CLIP_LINES_VERTEX, &ATTRIBUTE_BEHIND_CLIP_LINES_FRAGMENT]
+        } else {
+            [&ATTRIBUTE_VERTEX, &ATTRIBUTE_BEHIND_FRAGMENT]
+        };
+        vec![Program::draw(modules, Domain::SplatTriangles)]
+    }),
+    commands: Commands::Draws(DrawTargets {
+        colours: &[(Sums0, InitialContents::Cleared), (Sums1, InitialContents::Cleared)],
+        depth: Some((Behind, InitialContents::Tested)),
         topology: Topology::Triangles,
         test: DepthTest::NotBehind,
         blend: Blend::Add,

@@ -7,8 +7,7 @@ use crate::frame::resource::Resource::{
 };
 use crate::frame::variant::Variant;
 use crate::vk::shaders::{
-    ATTRIBUTE_BEHIND_CLIP_LINES_FRAGMENT, ATTRIBUTE_BEHIND_FRAGMENT, ATTRIBUTE_CLIP_LINES_VERTEX,
-    ATTRIBUTE_VERTEX, BEHIND_COMPUTE, BEHIND_FRAGMENT, BEHIND_MIX_COMPUTE, BEHIND_NEAREST_SAMPLES_FRAGMENT,
+    BEHIND_COMPUTE, BEHIND_FRAGMENT, BEHIND_MIX_COMPUTE, BEHIND_NEAREST_SAMPLES_FRAGMENT,
     BEHIND_SUBGROUPS_COMPUTE, BEHIND_VERTEX, constant,
 };
 use crate::vk::{Blend, DepthTest, Topology};
@@ -48,36 +47,13 @@ pub static RASTER_SAMPLES: Pass = Pass {
 /// Splat triangles with a depth test, of splats that cover samples which the nearest surface leaves free.
 pub static RASTER_DEPTHS: Pass = Pass {
     name: "behind",
-    reads: &[Splats, ScreenClips, Visibility, Coverage],
-    writes: &[],
+    reads: &[Splats, ScreenClips, Visibility],
+    writes: &[Coverage],
     clears: &[],
     programs: Programs::OfScene(|_| {
         vec![Program::draw([&BEHIND_VERTEX, &BEHIND_FRAGMENT], Domain::SplatTriangles)]
     }),
     commands: Commands::Draws(DEPTH),
-};
-
-/// Splat triangles with additive blending, within those depths.
-pub static RASTER_SUMS: Pass = Pass {
-    name: "behind",
-    reads: &[Splats, ScreenClips, Visibility],
-    writes: &[],
-    clears: &[],
-    programs: Programs::OfScene(|variant| {
-        let modules = if variant.clips {
-            [&ATTRIBUTE_CLIP_LINES_VERTEX, &ATTRIBUTE_BEHIND_CLIP_LINES_FRAGMENT]
-        } else {
-            [&ATTRIBUTE_VERTEX, &ATTRIBUTE_BEHIND_FRAGMENT]
-        };
-        vec![Program::draw(modules, Domain::SplatTriangles)]
-    }),
-    commands: Commands::Draws(DrawTargets {
-        colours: &[(Sums0, InitialContents::Cleared), (Sums1, InitialContents::Cleared)],
-        depth: Some((Behind, InitialContents::Tested)),
-        topology: Topology::Triangles,
-        test: DepthTest::NotBehind,
-        blend: Blend::Add,
-    }),
 };
 
 /// One invocation per pixel, which mixes both surfaces.

@@ -77,7 +77,7 @@ mod tests {
         all
     }
 
-    const RESOURCES: [Resource; 25] = [
+    const RESOURCES: [Resource; 27] = [
         Resource::VisibleClusters,
         Resource::Order,
         Resource::Splats,
@@ -92,6 +92,8 @@ mod tests {
         Resource::OpenTiles,
         Resource::Coverage,
         Resource::Nearest,
+        Resource::EdgeTiles,
+        Resource::Behind,
         Resource::NearestDepth,
         Resource::NearestId,
         Resource::Pulled,

@@ -3,7 +3,7 @@
 use super::*;
 
 fn coverage() -> Settings {
-    Settings { alpha: Alpha::Coverage, ..plain() }
+    Settings { alpha: Alpha::Coverage, edges: Edges::Nearest, ..plain() }
 }
 
 /// α of the discs in parallel projection, 16 px per unit.

@@ -8,7 +8,7 @@ mod passes;
 
 use super::*;
 use crate::geometry::{Clip, ClipLine, Clips, Colours, Curvature, Ellipse, Surfels};
-use crate::settings::{Alpha, Cull, Shading, Widen};
+use crate::settings::{Alpha, Cull, Edges, Shading, Widen};
 use glam::{DMat2, DVec2, DVec3, DVec4};
 
 const SIZE: [u32; 2] = [64, 64];
