@@ -86,6 +86,7 @@ effects! {
     light_at_every_pixel_keeps_highlights_sharp: "deferred-shading";
     a_ribbon_is_narrower_where_it_turns: "ribbon-width";
     lines_are_thicker_than_triangles: "thin-lines";
+    #[ignore = "takes long: tools/test --all"]
     sprites_leave_holes_under_strong_perspective: "perspective-methods";
     means_of_all_around_let_hidden_surfaces_through: "layers";
     #[ignore = "takes long: tools/test --all"]
@@ -94,6 +95,7 @@ effects! {
     a_ribbon_is_as_wide_as_it_is: "ribbon";
     #[ignore = "takes long: tools/test --all"]
     a_tube_is_round: "tubes";
+    #[ignore = "takes long: tools/test --all"]
     a_branch_has_leaves: "leaf-and-branch";
     #[ignore = "takes long: tools/test --all"]
     a_tree_is_lines: "tree";
