@@ -9,7 +9,10 @@ use std::time::{Duration, Instant};
 /// Timeout of a file.
 const LONGEST: Duration = Duration::from_secs(120);
 
-/// The PLY files under a folder.
+/// Largest file of the short run, bytes: estimates of the points of larger ones take most of the time.
+const LARGEST: u64 = 2 << 20;
+
+/// The PLY files under a folder, of any size only in the whole matrix.
 fn files(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut folders = vec![folder.to_owned()];
@@ -17,7 +20,9 @@ fn files(folder: &Path) -> Vec<PathBuf> {
         for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
             if path.is_dir() {
                 folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "ply") {
+            } else if path.extension().is_some_and(|extension| extension == "ply")
+                && (whole_matrix() || path.metadata().unwrap().len() <= LARGEST)
+            {
                 found.push(path);
             }
         }
