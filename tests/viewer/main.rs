@@ -6,6 +6,9 @@ mod display;
 mod faults;
 mod keys;
 mod load;
+#[allow(dead_code, reason = "other tests use the rest")]
+#[path = "../support/matrix.rs"]
+mod matrix;
 mod other_programs;
 #[allow(dead_code, reason = "other tests use the rest")]
 #[path = "../cli/program.rs"]

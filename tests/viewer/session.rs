@@ -14,6 +14,7 @@ fn a_session_with_a_scene() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn a_session_with_the_bunny() {
     let test = "a_session_with_the_bunny";
     if let Some(bunny) = scan(test, "stanford/bunny/bun_zipper.ply") {
