@@ -14,8 +14,8 @@ const MOST: [(&str, f64); 10] = [
     ("screwdriver", 0.59),
     ("laurana50k", 0.44),
     ("feline_50k", 0.38),
-    ("buddha_50k", 1.64),
-    ("chinese_dragon_10k", 2.43),
+    ("buddha_50k", 0.32),
+    ("chinese_dragon_10k", 1.06),
 ];
 
 /// The truth's default filter is a Gaussian of 1 px². The mesh has a box's 16 rays.
