@@ -36,10 +36,12 @@ pub(super) fn replace(draft: &mut Draft, how: &Estimate) {
     let samples: Vec<Sample> = kept.par_iter().filter_map(|&i| mesh.sample(i)).collect();
     let surfels = mesh.surfels(&samples);
     let count = samples.len() as u64;
+    // Means of given normals are given ones.
+    let given = draft.estimated.normals_given > 0;
     draft.estimated = Estimated {
         vertices_replaced: draft.surfels.len() as u64,
-        normals_given: 0,
-        normals_from_faces: count,
+        normals_given: if given { count } else { 0 },
+        normals_from_faces: if given { 0 } else { count },
         radii_from_faces: count,
         clipped: surfels.clips.as_ref().map_or(0, |clips| clips.clips.len() as u64),
         ..draft.estimated
@@ -72,7 +74,7 @@ fn areas_of_uneven(draft: &Draft) -> Option<Vec<f64>> {
             / 3.0
     };
     let angular: f64 = vectors.iter().zip(triangles).map(across).sum();
-    (discs > MOST_OVERLAP * area || angular > MOST_ANGULAR * area)
+    (area > 0.0 && (discs > MOST_OVERLAP * area || angular > MOST_ANGULAR * area))
         .then(|| vectors.iter().map(|vector| vector.length()).collect())
 }
 
@@ -251,7 +253,7 @@ mod tests {
         let (surfels, estimated) = cube().into_surfels(&Estimate::default(), &()).unwrap();
         assert_eq!((surfels.len(), estimated.vertices_replaced, estimated.clipped), (12, 8, 12));
         let (clips, ellipses) = (surfels.clips.as_ref().unwrap(), surfels.ellipses.as_ref().unwrap());
-        for i in 0..surfels.len() {
+        for (i, ellipse) in ellipses.iter().enumerate() {
             let (at, normal) = (surfels.positions[i], surfels.normals[i]);
             assert!(
                 (at.dot(normal) - 1.0).abs() < 1e-6 && at.abs().max_element() == 1.0,
@@ -261,7 +263,7 @@ mod tests {
             let inside = (at - at.dot(normal) * normal).as_dvec3();
             let clip = clips.get(i).unwrap();
             assert!(clip.keeps(1.9 * inside) && !clip.keeps(2.1 * inside), "{at}: the edge is at 1");
-            assert!((ellipses[i].major.dot(normal)).abs() < 1e-6);
+            assert!(ellipse.major.dot(normal).abs() < 1e-6);
         }
         let Some(Colours::Linear(colours)) = surfels.colours else { panic!("colours are kept") };
         let red: f32 = colours.iter().map(|colour| colour[0]).sum::<f32>() / 12.0;
