@@ -61,7 +61,14 @@ fn areas_of_uneven(draft: &Draft) -> Option<Vec<f64>> {
         || surfels.curvatures.is_some();
     let of_faces = estimated.radii_from_faces == surfels.len() as u64;
     let count = triangles.len() as f64;
-    if triangles.is_empty() || bound || !of_faces || count > MOST_TRIANGLES * surfels.len() as f64 {
+    // Where faces are back to back, neighbours tell normals.
+    let has_normals = !surfels.normals.contains(&Vec3::ZERO);
+    if triangles.is_empty()
+        || bound
+        || !of_faces
+        || !has_normals
+        || count > MOST_TRIANGLES * surfels.len() as f64
+    {
         return None;
     }
     let vectors: Vec<DVec3> =
