@@ -11,7 +11,6 @@
 #if defined(COMPUTE) && !defined(MIX)
 
 #define BEHIND
-#define VISIBILITY_STEPS 1
 #define COVERAGE_STEPS 12000
 #define BEHIND_STEPS 24000
 #define ATTRIBUTE_STEPS 26000
@@ -76,6 +75,7 @@ void main() {
     find_free_samples();
     compute_behind(origin);
     sum_attributes(origin);
+    report_incomplete();
     for (uint r = 0; r < ROWS; r++) {
         ivec2 pixel = ivec2(origin + lane_pixel(r));
         if (depths[r] > 0.0) mix_behind(pixel, coverage_masks[r], nearest_masks[r], tile_sums0[r], tile_sums1[r]);

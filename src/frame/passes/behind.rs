@@ -3,7 +3,8 @@
 use super::tiles;
 use crate::frame::pass::{Commands, Domain, DrawTargets, InitialContents, Pass, Program, Programs};
 use crate::frame::resource::Resource::{
-    Attributes, Behind, Boxes, Coverage, EdgeTiles, Image, ScreenClips, Splats, Sums0, Sums1, Visibility,
+    Attributes, Behind, Boxes, Coverage, EdgeTiles, Image, IncompleteFrame, ScreenClips, Splats, Sums0,
+    Sums1, Visibility,
 };
 use crate::frame::variant::Variant;
 use crate::vk::shaders::{
@@ -16,7 +17,7 @@ use crate::vk::{Blend, DepthTest, Topology};
 pub static COMPUTE: Pass = Pass {
     name: "behind",
     reads: &[Splats, Boxes, Attributes, ScreenClips, Visibility, Coverage],
-    writes: &[Image, EdgeTiles],
+    writes: &[Image, EdgeTiles, IncompleteFrame],
     clears: &[],
     programs: Programs::OfFrame(tile_programs),
     commands: Commands::Dispatches,
