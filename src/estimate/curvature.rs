@@ -46,6 +46,9 @@ fn curvature_at(surfels: &Surfels, sites: &Sites, i: usize) -> Curvature {
     }
     let site = sites.of_point[i];
     let basis = tangents(normal);
+    let clip = surfels.clips.as_ref().and_then(|clips| clips.get(i));
+    // Beyond a clip line is another surface.
+    let is_kept = |offset: DVec3| clip.is_none_or(|clip| clip.keeps(f64::from(sites.unit) * offset));
     let circles = sites.nearest(site, NEIGHBOURS).filter_map(|other| {
         let point = sites.point[other as usize] as usize;
         let is_same_side = !is_two_sided(point) && surfels.normals[point].as_dvec3().dot(normal) > SAME_SIDE;
@@ -53,7 +56,7 @@ fn curvature_at(surfels: &Surfels, sites: &Sites, i: usize) -> Curvature {
         // Through the centre and the neighbour, tangent to the disc.
         let circle = -2.0 * offset.dot(normal) / offset.length_squared();
         let tangent = DVec2::from_array(basis.map(|axis| axis.dot(offset))).try_normalize()?;
-        is_same_side.then_some((tangent, circle))
+        (is_same_side && is_kept(offset)).then_some((tangent, circle))
     });
     Curvature::of_shape_operator(fit(circles) * (1.0 / f64::from(sites.unit)))
 }

@@ -1,39 +1,56 @@
-//! Surfels on the faces of uneven and of angular meshes: an ellipse about each triangle in the place of a disc about each vertex.
+//! Surfels on the faces of coarse, uneven and angular meshes: ellipses on the triangles in the place of a disc about each vertex.
 //!
 //! A vertex' disc covers the parts of all its triangles that are nearest to it. Where triangles differ in size, as in decimated meshes and those of
-//! CAD programs, the longest of them sets the radius, and the disc stands out beyond the surface on all other sides; where they meet at an angle, the disc is in the plane of none. The ellipse through the
-//! corners of a triangle of least area (Steiner's) is the triangle's size in every direction.
+//! CAD programs, the longest of them sets the radius, and the disc stands out beyond the surface on all other sides; where they meet at an
+//! angle, the disc is in the plane of none. The ellipse through the corners of a triangle of least area (Steiner's) is the triangle's size in
+//! every direction. Triangles of coarse meshes are halved where an ellipse would stand out far, or normals and colours differ over it.
 
 use super::draft::Draft;
+use super::face_edges::{Border, FaceEdges, Fan};
 use super::faces::area_vector;
-use super::sites::distinct;
-use super::{Estimate, Estimated, MARGIN};
+use super::{Estimate, Estimated, MARGIN, MeshSampling};
 use crate::geometry::{Clip, ClipLine, Clips, Colours, Ellipse, Surfels, srgb};
 use glam::{DMat2, DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// Most area of the vertices' discs, without margin, relative to that of the triangles. Of equilateral triangles it is 1.2, of scanned meshes 1.3 to
-/// 2.8, of the ellipses 2.4: as there are twice as many of these, they have to cover less.
+/// Most area of the vertices' discs, without margin, relative to that of the triangles. Of equilateral triangles it is 1.2, of scanned meshes
+/// 1.3 to 2.8, of the ellipses 2.4: as there are twice as many of these, they have to cover less.
 const MOST_OVERLAP: f64 = 2.8;
 /// Largest mean sine of the angle between vertices' normals and their triangles: 14°. Of scanned meshes it is 0.06 to 0.2.
 const MOST_ANGULAR: f64 = 0.25;
+/// Most samples that halved triangles are made into. Meshes with fewer triangles are coarse.
+const MOST_HALVED: usize = 30_000;
+/// Distance by which an ellipse may stand out of the surface, relative to the extent of the mesh.
+const STANDS_OUT: f64 = 1.0 / 6000.0;
+/// Angle between normals over an ellipse, radians.
+const TURNS: f64 = 0.15;
+/// Difference of colours over an ellipse, linear light.
+const COLOURS: f64 = 0.1;
+/// Triangles with a longest side below this part of the extent of the mesh are not halved.
+const LEAST_SIDE: f64 = 1.0 / 1000.0;
 /// Most triangles per vertex: twice as many on closed surfaces, some more on those with handles.
 const MOST_TRIANGLES: f64 = 2.2;
 /// Cosine of the angle to the face beyond which a vertex' normal is another surface's: 45°.
 const ALIKE: f64 = 0.707;
-/// Cosine of the angle between triangles at a sharp edge: 60°. Ellipses that overlap beyond flatter edges are more accurate than clipped ones.
-const SHARP: f64 = 0.5;
+/// Factor of ellipses beyond the corners of their triangles: at a corner, all of them end.
+const CORNER_MARGIN: f64 = 1.4;
 /// Least aspect of an ellipse.
 const LEAST_ASPECT: f64 = 1e-3;
+/// Cosine above which clip lines are nearly the same.
+const SAME_LINE: f64 = 0.9;
+/// Part of a triangle's size within which a corner is on a border.
+const ON_BORDER: f64 = 1e-6;
 
-/// Replaces the discs of vertices by ellipses on the triangles, if the discs overlap too much or are not in the triangles' planes. Only of meshes whose radii are all of faces, and
+/// Replaces the discs of vertices by ellipses on the triangles, if [`MeshSampling`] says so. Only of meshes whose radii are all of faces, and
 /// without attributes that belong to points.
 pub(super) fn replace(draft: &mut Draft, how: &Estimate) {
-    let Some(areas) = areas_of_uneven(draft) else { return };
+    let Some(areas) = areas_of_sampled(draft, how) else { return };
     let mesh = Mesh::new(draft, how.outlines);
     let kept: Vec<usize> = (0..draft.triangles.len()).filter(|&i| areas[i] > 0.0).collect();
-    let samples: Vec<Sample> = kept.par_iter().filter_map(|&i| mesh.sample(i)).collect();
+    let faces: Vec<Face> = kept.par_iter().map(|&i| mesh.face(i)).collect();
+    let error = mesh.error(&faces);
+    let samples: Vec<Sample> = faces.par_iter().flat_map_iter(|face| mesh.samples(face, error)).collect();
     let surfels = mesh.surfels(&samples);
     let count = samples.len() as u64;
     // Means of given normals are given ones.
@@ -48,10 +65,11 @@ pub(super) fn replace(draft: &mut Draft, how: &Estimate) {
     };
     draft.surfels = surfels;
     draft.triangles = Vec::new();
+    draft.sort_morton();
 }
 
-/// The areas of the triangles, if the mesh is uneven or angular.
-fn areas_of_uneven(draft: &Draft) -> Option<Vec<f64>> {
+/// The areas of the triangles, if they are sampled.
+fn areas_of_sampled(draft: &Draft, how: &Estimate) -> Option<Vec<f64>> {
     let Draft { surfels, triangles, estimated } = draft;
     let bound = surfels.weights.is_some()
         || surfels.clips.is_some()
@@ -60,20 +78,20 @@ fn areas_of_uneven(draft: &Draft) -> Option<Vec<f64>> {
         || surfels.ellipses.is_some()
         || surfels.curvatures.is_some();
     let of_faces = estimated.radii_from_faces == surfels.len() as u64;
-    let count = triangles.len() as f64;
-    // Where faces are back to back, neighbours tell normals.
-    let has_normals = !surfels.normals.contains(&Vec3::ZERO);
-    if triangles.is_empty()
-        || bound
-        || !of_faces
-        || !has_normals
-        || count > MOST_TRIANGLES * surfels.len() as f64
-    {
+    let impossible = triangles.is_empty() || bound || !of_faces;
+    let too_many = triangles.len() as f64 > MOST_TRIANGLES * surfels.len() as f64;
+    let wanted = match how.mesh_sampling {
+        MeshSampling::Vertices => false,
+        MeshSampling::Triangles => true,
+        MeshSampling::Auto => !too_many,
+    };
+    if impossible || !wanted {
         return None;
     }
     let vectors: Vec<DVec3> =
         triangles.par_iter().map(|&corners| 0.5 * area_vector(&surfels.positions, corners)).collect();
-    let area: f64 = vectors.iter().map(|vector| vector.length()).sum();
+    let areas: Vec<f64> = vectors.iter().map(|vector| vector.length()).collect();
+    let area: f64 = areas.iter().sum();
     let discs: f64 = surfels.radii.iter().map(|&radius| PI * (f64::from(radius) / MARGIN).powi(2)).sum();
     // Sines, weighted by area.
     let across = |(vector, corners): (&DVec3, &[u32; 3])| {
@@ -81,96 +99,134 @@ fn areas_of_uneven(draft: &Draft) -> Option<Vec<f64>> {
             / 3.0
     };
     let angular: f64 = vectors.iter().zip(triangles).map(across).sum();
-    (area > 0.0 && (discs > MOST_OVERLAP * area || angular > MOST_ANGULAR * area))
-        .then(|| vectors.iter().map(|vector| vector.length()).collect())
+    let needed = how.mesh_sampling == MeshSampling::Triangles
+        || triangles.len() < MOST_HALVED
+        || discs > MOST_OVERLAP * area
+        || angular > MOST_ANGULAR * area;
+    (area > 0.0 && needed).then_some(areas)
 }
 
 /// A surfel on a triangle.
 struct Sample {
     position: Vec3,
     normal: Vec3,
-    radius: f32,
+    radius: f64,
     ellipse: Ellipse,
+    /// Corners of the triangle, and their weights in the sample.
     corners: [u32; 3],
+    weights: DVec3,
     clip: Option<Clip>,
+    /// Number of borders within its reach.
+    borders: usize,
+}
+
+/// A part of a triangle: the weights of the triangle's corners at its own.
+type Part = [DVec3; 3];
+
+/// A triangle that is sampled.
+struct Face {
+    corners: [u32; 3],
+    points: [DVec3; 3],
+    normals: [DVec3; 3],
+    colours: Option<[DVec3; 3]>,
+    /// Where the smooth surface ends, at its sides and corners.
+    borders: Vec<Border>,
+    /// Its sides.
+    sides: Vec<Border>,
+    /// Sine of the largest angle to the triangles around its corners on the same smooth surface.
+    bend: f64,
 }
 
 /// A mesh whose triangles are sampled.
 struct Mesh<'a> {
     draft: &'a Draft,
-    /// The vertex of each point; coinciding points are one.
-    vertices: Vec<u32>,
-    /// The sides of all triangles by the vertices at their ends, sorted, each with its triangle.
-    sides: Vec<([u32; 2], u32)>,
+    edges: FaceEdges<'a>,
+    /// Diagonal of the bounding box.
+    extent: f64,
     /// Whether ellipses end at the sides beyond which the surface does.
     outlines: bool,
 }
 
 impl<'a> Mesh<'a> {
     fn new(draft: &'a Draft, outlines: bool) -> Self {
-        let (vertices, _) = distinct(&draft.surfels.positions);
-        let sides_of = |(i, corners): (usize, &[u32; 3])| {
-            let [a, b, c] = corners.map(|i| vertices[i as usize]);
-            [(a, b), (b, c), (c, a)].map(|(a, b)| ([a.min(b), a.max(b)], i as u32))
+        let positions = &draft.surfels.positions;
+        let edges = FaceEdges::new(positions, &draft.triangles);
+        let corners = |of: fn(Vec3, Vec3) -> Vec3| positions.iter().copied().reduce(of).unwrap_or_default();
+        let extent = corners(Vec3::max).as_dvec3().distance(corners(Vec3::min).as_dvec3());
+        Self { draft, edges, extent, outlines }
+    }
+
+    fn face(&self, i: usize) -> Face {
+        let corners = self.draft.triangles[i];
+        let fans = [0, 1, 2].map(|k| self.edges.fan(i, k));
+        let own = self.edges.normal(i);
+        let around = fans.iter().flat_map(|fan| &fan.triangles);
+        let bend = around.map(|&other| own.cross(self.edges.normal(other as usize)).length());
+        let mut ends: Vec<(u32, usize)> = fans.iter().flat_map(|fan| &fan.ends).copied().collect();
+        ends.sort_unstable();
+        ends.dedup();
+        let border = |(triangle, side): (u32, usize)| self.edges.border(triangle as usize, side);
+        Face {
+            corners,
+            points: self.edges.points(i),
+            normals: [0, 1, 2].map(|k| self.corner_normal(i, k, &fans[k])),
+            colours: self.draft.surfels.colours.as_ref().map(|of| corners.map(|corner| light(of, corner))),
+            borders: ends.into_iter().filter(|_| self.outlines).filter_map(border).collect(),
+            sides: (0..3).filter_map(|k| self.edges.border(i, k)).collect(),
+            bend: bend.fold(0.0, f64::max),
+        }
+    }
+
+    /// The least error of halved triangles with [`MOST_HALVED`] samples at most, relative to the limits above; infinite if there are as many
+    /// triangles.
+    fn error(&self, faces: &[Face]) -> f64 {
+        if faces.len() >= MOST_HALVED {
+            return f64::INFINITY;
+        }
+        let count = |error: f64| {
+            let counts = faces.par_iter().map(|face| {
+                let mut count = 0;
+                face.halve(self.extent, error, &mut |_| {
+                    count += 1;
+                    count <= MOST_HALVED
+                });
+                count
+            });
+            counts.sum::<usize>()
         };
-        let mut sides: Vec<_> = draft.triangles.par_iter().enumerate().flat_map_iter(sides_of).collect();
-        sides.par_sort_unstable();
-        Self { draft, vertices, sides, outlines }
+        let mut error = 1.0;
+        while count(error) > MOST_HALVED {
+            error *= 1.25;
+        }
+        error
     }
 
-    /// The unit normal of triangle `i`, on the side of its vertices' normals; 0 if it is degenerate.
-    fn face_normal(&self, i: usize) -> DVec3 {
-        let corners = self.draft.triangles[i];
+    fn samples(&self, face: &Face, error: f64) -> Vec<Sample> {
+        let mut samples = Vec::new();
+        face.halve(self.extent, error, &mut |part| {
+            samples.extend(face.sample(part));
+            true
+        });
+        samples
+    }
+
+    /// The normal at corner `k` of triangle `i`: a given one if it is near the face's, otherwise the mean of the triangles around the corner on
+    /// the same smooth surface, weighted by their angles.
+    fn corner_normal(&self, i: usize, k: usize, fan: &Fan) -> DVec3 {
+        let own = self.edges.normal(i);
         let surfels = &self.draft.surfels;
-        let own = area_vector(&surfels.positions, corners).normalize_or_zero();
-        let mean: DVec3 = corners.iter().map(|&corner| surfels.normals[corner as usize].as_dvec3()).sum();
-        if own.dot(mean) < 0.0 { -own } else { own }
-    }
-
-    fn sample(&self, i: usize) -> Option<Sample> {
-        let corners = self.draft.triangles[i];
-        let surfels = &self.draft.surfels;
-        let points = corners.map(|corner| surfels.positions[corner as usize].as_dvec3());
-        let centre = points.iter().sum::<DVec3>() / 3.0;
-        let face = self.face_normal(i);
-        let normals = corners.map(|corner| surfels.normals[corner as usize].as_dvec3());
-        let mean = normals.iter().filter(|normal| normal.dot(face) >= ALIKE).sum::<DVec3>();
-        let normal = mean.try_normalize().unwrap_or(face).as_vec3().try_normalize()?;
-        let (radius, ellipse) = ellipse(points.map(|point| point - centre), normal)?;
-        let clip = self.clip(i, points, centre, normal, radius);
-        Some(Sample { position: centre.as_vec3(), normal, radius: radius as f32, ellipse, corners, clip })
-    }
-
-    /// The clip at sides beyond which there is no surface, or one at an angle: the two nearest ones within the ellipse's reach.
-    fn clip(&self, i: usize, points: [DVec3; 3], centre: DVec3, normal: Vec3, radius: f64) -> Option<Clip> {
-        let mut lines: Vec<ClipLine> = (0..3)
-            .filter(|_| self.outlines)
-            .filter_map(|k| {
-                let [a, b, opposite] = [k, (k + 1) % 3, (k + 2) % 3].map(|k| points[k]);
-                if !self.ends_at(i, k) {
-                    return None;
-                }
-                let outward = (a - opposite).reject_from((b - a).try_normalize()?).try_normalize()?;
-                let line = ClipLine::of_half_space(outward, outward.dot(a - centre), normal)?;
-                (f64::from(line.offset) < radius).then_some(line)
-            })
-            .collect();
-        lines.sort_by(|a, b| a.offset.total_cmp(&b.offset));
-        let mut nearest = lines.into_iter();
-        Clip::of_some([nearest.next(), nearest.next()], false)
-    }
-
-    /// Whether the smooth surface of triangle `i` ends at its side `k`.
-    fn ends_at(&self, i: usize, k: usize) -> bool {
-        let corners = self.draft.triangles[i].map(|corner| self.vertices[corner as usize]);
-        let (a, b) = (corners[k], corners[(k + 1) % 3]);
-        let side = [a.min(b), a.max(b)];
-        let first = self.sides.partition_point(|(other, _)| *other < side);
-        let triangles = self.sides[first..].iter().take_while(|(other, _)| *other == side);
-        let own = self.face_normal(i);
-        !triangles
-            .map(|&(_, other)| other as usize)
-            .any(|other| other != i && self.face_normal(other).dot(own) >= SHARP)
+        if self.draft.estimated.normals_given > 0 {
+            let given = self.draft.triangles[i].map(|corner| surfels.normals[corner as usize].as_dvec3());
+            // The side of a face is that of its corners' normals.
+            let own = if own.dot(given.iter().sum()) < 0.0 { -own } else { own };
+            return if given[k].dot(own) >= ALIKE { given[k] } else { own };
+        }
+        let weighted = |&other: &u32| {
+            let normal = self.edges.normal(other as usize);
+            let same = if normal.dot(own) < 0.0 { -1.0 } else { 1.0 };
+            self.edges.angle(other as usize, i, k) * same * normal
+        };
+        fan.triangles.iter().map(weighted).sum::<DVec3>().normalize_or(own)
     }
 
     fn surfels(&self, samples: &[Sample]) -> Surfels {
@@ -182,7 +238,7 @@ impl<'a> Mesh<'a> {
             origin: from.origin,
             positions: samples.iter().map(|sample| sample.position).collect(),
             normals: samples.iter().map(|sample| sample.normal).collect(),
-            radii: samples.iter().map(|sample| sample.radius).collect(),
+            radii: samples.iter().map(|sample| sample.radius as f32).collect(),
             ellipses: Some(samples.iter().map(|sample| sample.ellipse).collect()),
             two_sided,
             clips: Clips::collect(samples.iter().map(|sample| sample.clip)),
@@ -190,6 +246,114 @@ impl<'a> Mesh<'a> {
             ..Surfels::default()
         }
     }
+}
+
+impl Face {
+    /// Halves the triangle until the error of its parts is at most `error`, and calls `each` with these, until it returns `false`.
+    fn halve(&self, extent: f64, error: f64, each: &mut impl FnMut(&Part) -> bool) {
+        let mut waiting = vec![[DVec3::X, DVec3::Y, DVec3::Z]];
+        while let Some(part) = waiting.pop() {
+            let (k, side) = longest(&part.map(|weights| mix(&self.points, weights)));
+            if side > LEAST_SIDE * extent && self.error(&part, extent) > error {
+                waiting.extend(halves(&part, k));
+            } else if !each(&part) {
+                return;
+            }
+        }
+    }
+
+    /// The error of a part's ellipse, relative to the limits.
+    fn error(&self, part: &Part, extent: f64) -> f64 {
+        let Some(sample) = self.sample(part) else { return 0.0 };
+        let centre = sample.position.as_dvec3();
+        let beyond = |side: &Border| sample.reach(side.outward) - side.outward.dot(side.at - centre);
+        let out = self.sides.iter().map(beyond).fold(0.0, f64::max);
+        let normals = part.map(|weights| mix(&self.normals, weights).normalize_or_zero());
+        let turns = (0..3).map(|k| normals[k].cross(normals[(k + 1) % 3]).length()).fold(0.0, f64::max);
+        let colours = self.colours.map_or(0.0, |colours| {
+            let colours = part.map(|weights| mix(&colours, weights));
+            (0..3).map(|k| (colours[k] - colours[(k + 1) % 3]).abs().max_element()).fold(0.0, f64::max)
+        });
+        // Where a third border is not clipped, the ellipse stands out beyond it.
+        let unclipped = if sample.borders > 2 { out } else { 0.0 };
+        let out = (self.bend * out).max(unclipped);
+        (out / (STANDS_OUT * extent)).max(turns / TURNS).max(colours / COLOURS)
+    }
+
+    fn sample(&self, part: &Part) -> Option<Sample> {
+        let weights = (part[0] + part[1] + part[2]) / 3.0;
+        let centre = mix(&self.points, weights);
+        let normal = mix(&self.normals, weights).as_vec3().try_normalize()?;
+        let points = part.map(|weights| mix(&self.points, weights) - centre);
+        let (radius, ellipse) = ellipse(points, normal)?;
+        let mut sample = Sample {
+            position: centre.as_vec3(),
+            normal,
+            radius,
+            ellipse,
+            corners: self.corners,
+            weights,
+            clip: None,
+            borders: 0,
+        };
+        let lines = sample.lines(&self.borders, points, centre);
+        sample.borders = lines.len();
+        sample.clip = Clip::of_some([lines.first().copied(), lines.get(1).copied()], false);
+        Some(sample)
+    }
+}
+
+impl Sample {
+    /// How far the ellipse reaches along a unit vector.
+    fn reach(&self, along: DVec3) -> f64 {
+        let major = self.ellipse.major.as_dvec3();
+        let minor = self.normal.as_dvec3().cross(major);
+        self.radius * along.dot(major).hypot(f64::from(self.ellipse.aspect) * along.dot(minor))
+    }
+
+    /// The clip lines at borders, those that cut off most first, without nearly equal ones. `points` are the corners of the part relative to
+    /// its centre.
+    fn lines(&self, borders: &[Border], points: [DVec3; 3], centre: DVec3) -> Vec<ClipLine> {
+        let size = points.iter().map(|point| point.length()).fold(0.0, f64::max);
+        let cut = |border: &Border| {
+            let distance = border.outward.dot(border.at - centre);
+            // A border across the triangle is that of a concave corner.
+            if points.iter().any(|point| border.outward.dot(*point) > distance + ON_BORDER * size) {
+                return None;
+            }
+            let line = ClipLine::of_half_space(border.outward, distance, self.normal)?;
+            let cut = self.reach(line.outward.as_dvec3()) - f64::from(line.offset);
+            (cut > 0.0).then_some((cut, line))
+        };
+        let mut all: Vec<(f64, ClipLine)> = borders.iter().filter_map(cut).collect();
+        all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut lines: Vec<ClipLine> = Vec::new();
+        for (_, line) in all {
+            let is_same = |other: &ClipLine| f64::from(line.outward.dot(other.outward)) > SAME_LINE;
+            if !lines.iter().any(is_same) {
+                lines.push(line);
+            }
+        }
+        lines
+    }
+}
+
+/// The mean with the weights of the three.
+fn mix(of: &[DVec3; 3], weights: DVec3) -> DVec3 {
+    of[0] * weights.x + of[1] * weights.y + of[2] * weights.z
+}
+
+/// The longest side of a triangle, and its length.
+fn longest(points: &[DVec3; 3]) -> (usize, f64) {
+    let length = |k: usize| points[k].distance(points[(k + 1) % 3]);
+    (0..3).map(|k| (k, length(k))).fold((0, 0.0), |a, b| if b.1 > a.1 { b } else { a })
+}
+
+/// The halves of a part of a triangle, on both sides of the middle of its side `k`.
+fn halves(part: &Part, k: usize) -> [Part; 2] {
+    let [a, b, opposite] = [k, (k + 1) % 3, (k + 2) % 3].map(|k| part[k]);
+    let middle = 0.5 * (a + b);
+    [[a, middle, opposite], [middle, b, opposite]]
 }
 
 /// Steiner's circumellipse of a triangle around 0, with the margin of discs, in the plane of a unit normal.
@@ -208,32 +372,36 @@ fn ellipse(points: [DVec3; 3], normal: Vec3) -> Option<(f64, Ellipse)> {
     let (major, minor) = ((middle + root).sqrt(), (middle - root).max(0.0).sqrt());
     let direction = angle.cos() * u + angle.sin() * v;
     let aspect = (minor / major).clamp(LEAST_ASPECT, 1.0) as f32;
-    let radius = MARGIN * unit * major;
+    let radius = CORNER_MARGIN * unit * major;
     (radius > 0.0 && radius.is_finite()).then(|| (radius, Ellipse { major: direction.as_vec3(), aspect }))
+}
+
+/// The colour of a point, linear light.
+fn light(colours: &Colours, i: u32) -> DVec3 {
+    DVec3::from_array(match colours {
+        Colours::Srgb8(codes) => {
+            let [r, g, b, _] = codes[i as usize];
+            [r, g, b].map(|code| srgb::decode(f64::from(code) / 255.0))
+        }
+        Colours::Linear(linear) => linear[i as usize].map(f64::from),
+    })
 }
 
 /// The mean colours of the corners, in linear light.
 fn mean_colours(colours: &Colours, samples: &[Sample]) -> Colours {
-    let mean = |of: &dyn Fn(u32) -> [f64; 3], sample: &Sample| {
-        let corners = sample.corners.map(of);
-        [0, 1, 2].map(|channel| corners.iter().map(|corner| corner[channel]).sum::<f64>() / 3.0)
-    };
+    let means = samples.iter().map(|sample| {
+        let corners = sample.corners.map(|corner| light(colours, corner));
+        mix(&corners, sample.weights).to_array()
+    });
     match colours {
-        Colours::Srgb8(codes) => {
-            let light = |i: u32| {
-                let [r, g, b, _] = codes[i as usize];
-                [r, g, b].map(|code| srgb::decode(f64::from(code) / 255.0))
-            };
-            let code = |sample| {
-                let [r, g, b] = mean(&light, sample).map(|linear| srgb::encode8(linear as f32));
+        Colours::Srgb8(_) => {
+            let code = |mean: [f64; 3]| {
+                let [r, g, b] = mean.map(|linear| srgb::encode8(linear as f32));
                 [r, g, b, u8::MAX]
             };
-            Colours::Srgb8(samples.iter().map(code).collect())
+            Colours::Srgb8(means.map(code).collect())
         }
-        Colours::Linear(linear) => {
-            let light = |i: u32| linear[i as usize].map(f64::from);
-            Colours::Linear(samples.iter().map(|sample| mean(&light, sample).map(|v| v as f32)).collect())
-        }
+        Colours::Linear(_) => Colours::Linear(means.map(|mean| mean.map(|v| v as f32)).collect()),
     }
 }
 
@@ -258,7 +426,7 @@ mod tests {
     #[test]
     fn a_cube_is_of_its_faces() {
         let (surfels, estimated) = cube().into_surfels(&Estimate::default(), &()).unwrap();
-        assert_eq!((surfels.len(), estimated.vertices_replaced, estimated.clipped), (12, 8, 12));
+        assert_eq!((surfels.len() as u64, 8), (estimated.normals_from_faces, estimated.vertices_replaced));
         let (clips, ellipses) = (surfels.clips.as_ref().unwrap(), surfels.ellipses.as_ref().unwrap());
         for (i, ellipse) in ellipses.iter().enumerate() {
             let (at, normal) = (surfels.positions[i], surfels.normals[i]);
@@ -266,32 +434,52 @@ mod tests {
                 (at.dot(normal) - 1.0).abs() < 1e-6 && at.abs().max_element() == 1.0,
                 "{at} faces {normal}"
             );
-            // Within the face, from the centre along the way outwards in the plane.
-            let inside = (at - at.dot(normal) * normal).as_dvec3();
-            let clip = clips.get(i).unwrap();
-            assert!(clip.keeps(1.9 * inside) && !clip.keeps(2.1 * inside), "{at}: the edge is at 1");
-            assert!(ellipse.major.dot(normal).abs() < 1e-6);
+            // No part of a disc is beyond an edge.
+            let (major, minor) = (ellipse.major.as_dvec3(), normal.cross(ellipse.major).as_dvec3());
+            let radius = f64::from(surfels.radii[i]);
+            for k in 0..64 {
+                let (sin, cos) = (PI * f64::from(k) / 32.0).sin_cos();
+                let offset = radius * (cos * major + f64::from(ellipse.aspect) * sin * minor);
+                let beyond = (at.as_dvec3() + offset).abs().max_element() - 1.0;
+                let is_clipped = clips.get(i).is_some_and(|clip| !clip.keeps(offset));
+                assert!(beyond < STANDS_OUT * 12f64.sqrt() || is_clipped, "{at}: {beyond} beyond an edge");
+            }
         }
+        // Red is 4 times z, 2 times y and once x, from 0 to 1 along each axis.
         let Some(Colours::Linear(colours)) = surfels.colours else { panic!("colours are kept") };
-        let red: f32 = colours.iter().map(|colour| colour[0]).sum::<f32>() / 12.0;
-        assert!((red - 3.5).abs() < 1e-5 && colours.iter().all(|colour| colour[2] == 1.0), "{red}");
+        for (at, colour) in surfels.positions.iter().zip(colours) {
+            let red = (0.5 * (*at + 1.0)).dot(Vec3::new(1.0, 2.0, 4.0));
+            assert!((colour[0] - red).abs() < 1e-5 && colour[2] == 1.0, "{at}: {colour:?}, not {red}");
+        }
+    }
+
+    #[test]
+    fn flat_faces_of_one_colour_are_not_halved_without_need() {
+        let (surfels, _) = Cloud { colours: None, ..cube() }.into_surfels(&Estimate::default(), &()).unwrap();
+        assert!((12..100).contains(&surfels.len()), "{} surfels of a cube", surfels.len());
     }
 
     #[test]
     fn an_even_mesh_keeps_its_vertices_and_an_uneven_one_does_not() {
         // A plane grid whose columns are `width` apart, in turn with 1.
-        let replaced = |width: f32| {
+        const SIDE: u32 = 130;
+        let replaced = |width: f32, mesh_sampling| {
             let at =
                 |x: u32, y: u32| Vec3::new((x / 2) as f32 * (1.0 + width) + (x % 2) as f32, y as f32, 0.0);
-            let squares = (0..11).flat_map(|y| (0..11).map(move |x| 12 * y + x));
+            let squares = (0..SIDE - 1).flat_map(|y| (0..SIDE - 1).map(move |x| SIDE * y + x));
+            let square = |i| [[i, i + 1, i + SIDE], [i + 1, i + SIDE + 1, i + SIDE]];
             let cloud = Cloud {
-                positions: (0..144).map(|i| at(i % 12, i / 12)).collect(),
-                triangles: squares.flat_map(|i| [[i, i + 1, i + 12], [i + 1, i + 13, i + 12]]).collect(),
+                positions: (0..SIDE * SIDE).map(|i| at(i % SIDE, i / SIDE)).collect(),
+                triangles: squares.flat_map(square).collect(),
                 ..Cloud::default()
             };
-            cloud.into_surfels(&Estimate::default(), &()).unwrap().1.vertices_replaced
+            let how = Estimate { mesh_sampling, ..Estimate::default() };
+            cloud.into_surfels(&how, &()).unwrap().1.vertices_replaced
         };
-        assert_eq!([1.0, 8.0].map(replaced), [0, 144]);
+        let all = u64::from(SIDE * SIDE);
+        assert_eq!([1.0, 8.0].map(|width| replaced(width, MeshSampling::Auto)), [0, all]);
+        assert_eq!(replaced(1.0, MeshSampling::Triangles), all);
+        assert_eq!(replaced(8.0, MeshSampling::Vertices), 0);
     }
 
     /// The corners of the triangle are on Steiner's ellipse.
@@ -307,7 +495,7 @@ mod tests {
                 (corner - centre).dot(Vec3::Z.cross(major).as_dvec3()),
             );
             let distance = (along / radius).hypot(across / (radius * f64::from(aspect)));
-            assert!((MARGIN * distance - 1.0).abs() < 1e-5, "{distance}");
+            assert!((CORNER_MARGIN * distance - 1.0).abs() < 1e-5, "{distance}");
         }
     }
 }

@@ -6,9 +6,11 @@ mod creases;
 mod curvature;
 mod draft;
 mod eigen;
+mod face_edges;
 mod face_samples;
 mod faces;
 mod facets;
+mod forest;
 mod lines;
 mod model;
 mod neighbours;
@@ -20,6 +22,7 @@ mod sheet;
 mod sites;
 mod spacing;
 mod summary;
+mod winding;
 
 pub use spacing::spacing;
 
@@ -34,6 +37,30 @@ use std::ops::Add;
 /// Factor of estimated radii beyond the least that covers the surface between flat neighbours.
 const MARGIN: f64 = 1.3;
 
+/// Where the surfels of a mesh are.
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    strum::EnumMessage,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
+pub enum MeshSampling {
+    /// On the triangles of meshes that are coarse, or whose triangles differ in size or meet at angles; at the vertices of others.
+    #[default]
+    Auto,
+    /// At the vertices.
+    Vertices,
+    /// On the triangles, unless the vertices have radii or other attributes of surfels.
+    Triangles,
+}
+
 /// Options of an estimation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
@@ -47,6 +74,8 @@ pub struct Estimate {
     pub elliptical: bool,
     /// Whether outlines are estimated, too: [`Surfels::curvatures`], and clips at the boundaries of open meshes.
     pub outlines: bool,
+    /// Where the surfels of meshes are.
+    pub mesh_sampling: MeshSampling,
     /// Removes points whose mean distance from their neighbours is more than this number of standard deviations above the average.
     pub outliers: Option<f32>,
     /// Clips discs at creases where normals turn by more than this angle, radians.
@@ -63,6 +92,7 @@ impl Default for Estimate {
             radius_scale: 1.0,
             elliptical: false,
             outlines: true,
+            mesh_sampling: MeshSampling::Auto,
             outliers: None,
             sharp: None,
             line_radius: None,
@@ -120,7 +150,9 @@ pub struct Estimated {
     pub radii_from_neighbours: u64,
     /// Points removed because no face of their mesh uses them.
     pub unused: u64,
-    /// Vertices of uneven meshes, which ellipses on their triangles replace.
+    /// Triangles turned round: their neighbours are wound the other way, or their closed surface is wound inwards.
+    pub triangles_turned: u64,
+    /// Vertices of meshes that ellipses on their triangles replace ([`MeshSampling`]).
     pub vertices_replaced: u64,
     /// Points removed as outliers.
     pub outliers: u64,
@@ -149,6 +181,7 @@ impl Add for Estimated {
             radii_from_faces: self.radii_from_faces + other.radii_from_faces,
             radii_from_neighbours: self.radii_from_neighbours + other.radii_from_neighbours,
             unused: self.unused + other.unused,
+            triangles_turned: self.triangles_turned + other.triangles_turned,
             vertices_replaced: self.vertices_replaced + other.vertices_replaced,
             outliers: self.outliers + other.outliers,
             clipped: self.clipped + other.clipped,
@@ -163,7 +196,7 @@ impl Add for Estimated {
 impl Cloud {
     /// Converts the cloud to surfels, one per point, in Morton order. [`Cloud::into_model`] includes lines and triangles.
     ///
-    /// A missing normal is that of the faces around the point; without faces, that of the least-squares plane through its neighbours. Such
+    /// A missing normal is that of the faces around the point, outwards on a closed surface; without faces, that of the least-squares plane through its neighbours. Such
     /// a normal points to where the cloud was seen from, or agrees with known normals and with its neighbours', outwards on a closed
     /// surface. If its side is still unknown, the surfel is two-sided.
     ///
@@ -184,6 +217,7 @@ impl Cloud {
         }
         draft.count_given();
         progress.check_cancelled()?;
+        winding::turn(&mut draft);
         faces::fill(&mut draft, how);
         face_samples::replace(&mut draft, how);
         progress.check_cancelled()?;
@@ -230,6 +264,7 @@ mod tests {
             radii_given: 5,
             radii_from_faces: 6,
             radii_from_neighbours: 7,
+            triangles_turned: 16,
             vertices_replaced: 15,
             outliers: 8,
             clipped: 9,
@@ -247,6 +282,7 @@ mod tests {
             radii_given: 10,
             radii_from_faces: 12,
             radii_from_neighbours: 14,
+            triangles_turned: 32,
             vertices_replaced: 30,
             outliers: 16,
             clipped: 18,

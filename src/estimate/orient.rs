@@ -1,50 +1,12 @@
 //! Orientation of normals: neighbours agree in order of decreasing parallelism (Hoppe et al., Surface Reconstruction from Unorganized
 //! Points, 1992, section 3.3), along the minimum spanning tree of the neighbourhood graph.
 
+use super::forest::Forest;
 use super::sheet::Sheet;
 use crate::Progress;
 use glam::Vec3;
 use rayon::prelude::*;
 use std::collections::HashMap;
-
-/// Disjoint-set forest with parity: each node stores whether it agrees with its parent.
-struct Forest {
-    parent: Vec<u32>,
-    /// Whether the node's normal is flipped relative to its parent's.
-    flips: Vec<bool>,
-}
-
-impl Forest {
-    fn new(count: usize) -> Self {
-        Self { parent: (0..count as u32).collect(), flips: vec![false; count] }
-    }
-
-    /// The root of a node, and whether the node is flipped relative to it.
-    fn find(&mut self, mut node: u32) -> (u32, bool) {
-        let mut flipped = false;
-        loop {
-            let parent = self.parent[node as usize];
-            let above = self.parent[parent as usize];
-            if parent == above {
-                return (parent, flipped ^ (parent != node && self.flips[node as usize]));
-            }
-            // Path compression by halving.
-            self.flips[node as usize] ^= self.flips[parent as usize];
-            self.parent[node as usize] = above;
-            flipped ^= self.flips[node as usize];
-            node = above;
-        }
-    }
-
-    /// Makes two nodes agree, or disagree, unless they are connected.
-    fn join(&mut self, a: u32, b: u32, disagree: bool) {
-        let ((root_a, a), (root_b, b)) = (self.find(a), self.find(b));
-        if root_a != root_b {
-            self.parent[root_b as usize] = root_a;
-            self.flips[root_b as usize] = a ^ b ^ disagree;
-        }
-    }
-}
 
 /// Normals to orient, and their positions, by site.
 pub(super) struct Oriented<'a> {
@@ -130,7 +92,8 @@ impl Oriented<'_> {
         let mut sheets = HashMap::<u32, Sheet>::new();
         for (site, &(root, flipped)) in roots.iter().enumerate() {
             let normal = if flipped { -self.normals[site] } else { self.normals[site] };
-            sheets.entry(root).or_default().add(normal, (self.positions)(site as u32), self.areas[site]);
+            let (position, area) = ((self.positions)(site as u32).as_dvec3(), f64::from(self.areas[site]));
+            sheets.entry(root).or_default().add(normal.as_dvec3(), position, area);
         }
         for edge in edges.iter().filter(|edge| edge.weight < SURE) {
             let [(root, a), (_, b)] = [edge.a, edge.b].map(|site| roots[site as usize]);

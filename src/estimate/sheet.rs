@@ -1,6 +1,6 @@
 //! A connected part of a surface: sums that tell its inside from its outside.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 /// Sums over the discs of a sheet with consistent normals.
 #[derive(Clone, Copy, Debug, Default)]
@@ -31,8 +31,7 @@ const CONTRADICTED: f64 = 0.01;
 const LEAST_DISCS: u64 = 32;
 
 impl Sheet {
-    pub fn add(&mut self, normal: Vec3, position: Vec3, area: f32) {
-        let (normal, position, area) = (normal.as_dvec3(), position.as_dvec3(), f64::from(area));
+    pub fn add(&mut self, normal: DVec3, position: DVec3, area: f64) {
         self.discs += 1;
         self.area += area;
         self.vector += area * normal;
@@ -41,14 +40,18 @@ impl Sheet {
         self.flux += area * normal.dot(position);
     }
 
-    /// Whether it is reliably closed, so that it has an outside.
+    /// Whether neighbours agree well enough that it is reliably closed.
     pub fn is_closed(&self) -> bool {
+        self.discs >= LEAST_DISCS
+            && self.encloses()
+            && self.contradicted as f64 <= CONTRADICTED * self.sure as f64
+    }
+
+    /// Whether it has an outside, as far as its normals are consistent.
+    pub fn encloses(&self) -> bool {
         let middle = self.moment / self.area;
         let extent = (self.second_moment / self.area - middle.length_squared()).max(0.0).sqrt();
-        self.discs >= LEAST_DISCS
-            && self.vector.length() < CLOSED * self.area
-            && self.volume().abs() >= FULL * self.area * extent
-            && self.contradicted as f64 <= CONTRADICTED * self.sure as f64
+        self.vector.length() < CLOSED * self.area && self.volume().abs() >= FULL * self.area * extent
     }
 
     /// Three times the volume about the centre; negative if the normals point inwards.

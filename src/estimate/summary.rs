@@ -9,6 +9,7 @@ impl Estimated {
         let normals = sources(counts.normals_from_faces, counts.normals_from_neighbours);
         let radii = sources(counts.radii_from_faces, counts.radii_from_neighbours);
         let two_sided = Some(counts.two_sided).filter(|&count| count > 0 && normals.is_some());
+        let turned = Some(counts.triangles_turned).filter(|&count| count > 0);
         let replaced = Some(counts.vertices_replaced).filter(|&count| count > 0);
         let outliers = Some(counts.outliers).filter(|&count| count > 0);
         let unused = Some(counts.unused).filter(|&count| count > 0);
@@ -20,7 +21,10 @@ impl Estimated {
             normals.map(|text| format!("normals of {text}")),
             radii.map(|text| format!("radii of {text}")),
             two_sided.map(|count| format!("{count} two-sided")),
-            replaced.map(|count| format!("ellipses on the triangles in the place of {count} vertices, as the triangles differ in size or meet at angles")),
+            turned.map(|count| {
+                format!("{count} triangles turned round, as their surface is wound inwards or inconsistently")
+            }),
+            replaced.map(|count| format!("ellipses on the triangles in the place of {count} vertices")),
             outliers.map(|count| format!("{count} outliers left out")),
             unused.map(|count| format!("{count} that no face uses left out")),
             bounded.map(|count| format!("{count} clipped at boundaries of the mesh")),

@@ -81,12 +81,12 @@ fn polygons_renders_faces() {
          0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n"
     );
     program.write("a.ply", mesh);
-    assert!(program.run("info a.ply").text().contains("\nsurfels: 2\n"));
+    assert!(program.run("info a.ply").text().contains("\nsurfels: 8\n"));
     let text = program.run("info a.ply --polygons").text().to_owned();
     assert!(text.contains("surfels: 0\nribbons: 0\ntubes: 0\ndrawn triangles: 2\n"), "{text}");
     program.run("convert a.ply -o b.ply --polygons --color-by x").text();
     let text = program.run("info b.ply").text().to_owned();
-    assert!(text.contains("surfels: 2") && text.contains("faces: 2 understood"), "{text}");
+    assert!(text.contains("surfels: 8") && text.contains("faces: 2 understood"), "{text}");
     refused(&program, "convert a.ply -o b.ply --polygons --voxel 1");
 }
 

@@ -4,7 +4,7 @@ use crate::support::mesh;
 use crate::support::sampling::Random;
 use glam::Vec3;
 use std::collections::HashMap;
-use surfel::estimate::{Estimate, Estimated};
+use surfel::estimate::{Estimate, Estimated, MeshSampling};
 use surfel::geometry::{Cloud, Surfels};
 use surfel::verify::scenes::bumpy_sphere;
 
@@ -213,7 +213,8 @@ fn faces_back_to_back_tell_nothing_and_neighbours_do() {
         .map(|i| [i, near(i, 5), near(i, 89)])
         .chain((0..2000).rev().map(|i| [i, near(i, 89), near(i, 5)]))
         .collect();
-    let (surfels, counts) = estimate(Cloud { triangles, ..bare(sphere) });
+    let at_vertices = Estimate { mesh_sampling: MeshSampling::Vertices, ..Estimate::default() };
+    let (surfels, counts) = Cloud { triangles, ..bare(sphere) }.into_surfels(&at_vertices, &()).unwrap();
     assert_eq!((counts.normals_from_faces, counts.normals_from_neighbours, counts.two_sided), (0, 2000, 0));
     assert!(surfels.positions.iter().zip(&surfels.normals).all(|(p, n)| p.dot(*n) > 0.0));
 }

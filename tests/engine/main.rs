@@ -24,6 +24,7 @@ mod hostile;
 mod instances;
 mod lines;
 mod materials;
+mod mesh_outlines;
 mod papers;
 mod ply_edge;
 mod pull_push;
@@ -38,6 +39,7 @@ mod scans;
 #[cfg(feature = "compile-shaders")]
 mod shaders;
 mod sides;
+mod specks;
 mod sphere;
 #[path = "../support/mod.rs"]
 mod support;

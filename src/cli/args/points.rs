@@ -6,7 +6,7 @@ use glam::DVec3;
 use std::path::PathBuf;
 use std::sync::Arc;
 use surfel::Result;
-use surfel::estimate::Estimate;
+use surfel::estimate::{Estimate, MeshSampling};
 use surfel::formats::image;
 use surfel::geometry::{ColourMap, MipMap};
 use surfel::load::Colouring;
@@ -30,6 +30,14 @@ pub struct Points {
     /// Estimates elliptical discs, longer along directions in which points are sparser
     #[arg(long)]
     pub elliptical: bool,
+    /// Where the surfels of a mesh are
+    #[arg(
+        long,
+        value_name = "WHERE",
+        value_parser = choice::<MeshSampling>(),
+        default_value = MeshSampling::Auto.name(),
+    )]
+    pub mesh_sampling: MeshSampling,
     /// Drops points whose mean distance to their neighbours exceeds the average by SIGMA standard deviations
     #[arg(long, value_name = "SIGMA", value_parser = positive::<f32>, allow_hyphen_values = true)]
     pub drop_outliers: Option<f32>,
@@ -50,6 +58,7 @@ impl Points {
             radius_scale: self.radius_scale,
             elliptical: self.elliptical,
             outlines: true,
+            mesh_sampling: self.mesh_sampling,
             outliers: self.drop_outliers,
             sharp: None,
             line_radius: self.line_radius,
