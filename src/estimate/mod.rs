@@ -6,6 +6,7 @@ mod creases;
 mod curvature;
 mod draft;
 mod eigen;
+mod face;
 mod face_edges;
 mod face_samples;
 mod faces;
