@@ -5,8 +5,6 @@ use super::sites::distinct;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-/// Cosine of the angle between triangles at a sharp edge: 50°. Ellipses that overlap beyond flatter edges are more accurate than clipped ones.
-const SHARP: f64 = 0.643;
 /// Most triangles that are visited around a corner, each way.
 const MOST_AROUND: usize = 32;
 
@@ -39,7 +37,8 @@ pub(super) struct Border {
 }
 
 impl<'a> FaceEdges<'a> {
-    pub fn new(positions: &'a [Vec3], triangles: &'a [[u32; 3]]) -> Self {
+    /// `sharp` is the cosine of the angle between triangles at a sharp edge.
+    pub fn new(positions: &'a [Vec3], triangles: &'a [[u32; 3]], sharp: f64) -> Self {
         let (vertices, _) = distinct(positions);
         let normals: Vec<DVec3> = triangles
             .par_iter()
@@ -67,7 +66,7 @@ impl<'a> FaceEdges<'a> {
             others
                 .filter(|&&(_, other)| other as usize != i)
                 .map(|&(_, other)| (cosine(other as usize), other))
-                .filter(|(cosine, _)| *cosine >= SHARP)
+                .filter(|(cosine, _)| *cosine >= sharp)
                 .max_by(|a, b| a.0.total_cmp(&b.0))
                 .map(|(_, other)| other)
         };

@@ -23,6 +23,10 @@ const MOST_OVERLAP: f64 = 2.8;
 const MOST_ANGULAR: f64 = 0.25;
 /// Most samples that halved triangles are made into. Meshes with fewer triangles are coarse.
 const MOST_HALVED: usize = 30_000;
+/// Cosine of the angle between triangles at a sharp edge: 58°. Ellipses that overlap beyond flatter edges are more accurate than clipped ones.
+const SHARP: f64 = 0.53;
+/// The same of coarse meshes, whose ellipses are larger beside their details: 50°.
+const SHARP_OF_COARSE: f64 = 0.643;
 /// Most triangles per vertex: twice as many on closed surfaces, some more on those with handles.
 const MOST_TRIANGLES: f64 = 2.2;
 /// Cosine of the angle to the face beyond which a vertex' normal is another surface's: 45°.
@@ -105,7 +109,9 @@ struct Mesh<'a> {
 impl<'a> Mesh<'a> {
     fn new(draft: &'a Draft, outlines: bool) -> Self {
         let positions = &draft.surfels.positions;
-        let edges = FaceEdges::new(positions, &draft.triangles);
+        let is_coarse = draft.triangles.len() < MOST_HALVED;
+        let sharp = if is_coarse { SHARP_OF_COARSE } else { SHARP };
+        let edges = FaceEdges::new(positions, &draft.triangles, sharp);
         let corners = |of: fn(Vec3, Vec3) -> Vec3| positions.iter().copied().reduce(of).unwrap_or_default();
         let extent = corners(Vec3::max).as_dvec3().distance(corners(Vec3::min).as_dvec3());
         Self { draft, edges, extent, outlines }
