@@ -102,8 +102,9 @@ Image image_of_sprite(Disc disc, float sigma) {
     // Per unit of `size`: squares of scene lengths and fourth powers of px may overflow or underflow.
     vec2 s = flat_pixel(disc.axes[0]);
     vec2 t = flat_pixel(disc.axes[1]);
-    // Added variance along the projected normal, for the bound.
-    vec2 extra = disc.aspect * sqrt(cosine * cosine - across * across) * flat_pixel(lean);
+    // Added variance along the projected normal, for the bound. A difference of squares would not be 0 without the bound: a fused
+    // multiply-add rounds one square only, and the root of a negative number is NaN.
+    vec2 extra = disc.aspect * sqrt((cosine - abs(across)) * (cosine + abs(across))) * flat_pixel(lean);
     // |V| is the sum of the squares of all 2×2 minors (Cauchy and Binet); the first is known in closed form.
     vec2 minors = vec2(s.x, t.x) * extra.y - vec2(s.y, t.y) * extra.x;
     float area = length(vec3(view.jacobian * disc.aspect * abs(across), minors));

@@ -5,6 +5,7 @@ mod code_digest;
 mod hosts;
 mod layers;
 mod links;
+mod roots;
 mod shaders;
 mod words;
 
