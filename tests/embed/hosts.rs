@@ -74,8 +74,8 @@ fn assert_depths(found: &[f64], own: &Picture, reversed: bool, step: f64, what: 
     assert_eq!(found.len(), distances.len());
     for (found, distance) in found.iter().zip(distances) {
         let exact = depth_of((*distance).into(), reversed);
-        // Half a step of the format, and the rounding of floats near 1.
-        assert!((found - exact).abs() <= 0.5 * step + 3e-7, "{what}: {found} {exact}");
+        // A device may round to either neighbour (Vulkan, Fixed-Point Data Conversions); and the rounding of floats near 1.
+        assert!((found - exact).abs() <= step + 3e-7, "{what}: {found} {exact}");
     }
 }
 

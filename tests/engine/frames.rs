@@ -115,6 +115,13 @@ fn pipelines_outlive_their_renderers() {
     assert_silent(&device);
 }
 
+/// Bytes that a target of so many may be allocated with: some devices round images up to multiples of 128 rows (NVIDIA's block-linear
+/// layout), and all allocations are rounded up.
+fn most_bytes(planned: f64) -> f64 {
+    let [rows, padded] = [SIZE[1], SIZE[1].next_multiple_of(128)].map(f64::from);
+    planned * padded / rows + 65_536.0
+}
+
 #[test]
 fn passes_and_targets_match_the_plan() {
     let Some(device) = device(DeviceLimits::default()) else { return };
@@ -152,13 +159,21 @@ fn passes_and_targets_match_the_plan() {
             assert_eq!(timed, planned, "{rasterizer:?}");
             let per_pixel = plan.targets;
             let names: Vec<_> = per_pixel.iter().map(|(name, _)| *name).collect();
+            let bytes_per_pixel = |name: &str| {
+                per_pixel.iter().find(|(planned, _)| *planned == name).map_or(0.0, |(_, bytes)| *bytes)
+            };
             let mut made: Vec<_> = renderer.targets().iter().map(|target| target.name).collect();
             made.sort_by_key(|name| names.iter().position(|planned| planned == name));
             assert_eq!(made, names, "{rasterizer:?}");
-            // Allocations are rounded up.
-            let bytes: f64 = renderer.targets().iter().map(|target| target.bytes as f64).sum();
-            let planned: f64 = per_pixel.iter().map(|(_, bytes)| bytes * pixels).sum();
-            assert!(bytes >= planned && bytes < 1.1 * planned + 65_536.0, "{bytes} for {planned}");
+            for target in renderer.targets() {
+                let planned = bytes_per_pixel(target.name) * pixels;
+                let made = target.bytes as f64;
+                assert!(
+                    made >= planned && made < most_bytes(planned),
+                    "{}: {made} for {planned}",
+                    target.name
+                );
+            }
         }
     }
     assert_silent(&device);

@@ -48,8 +48,8 @@ impl Decisions {
         value <= 1.0
     }
 
-    /// Index of the least value, the first of equal ones. Alternatives that are `same` as the result do not count as
-    /// another outcome.
+    /// Index of the least value, the first of equal ones; rounding may make another one of these the least. Alternatives
+    /// that are `same` as the result do not count as another outcome.
     pub fn least<T>(
         &self,
         all: &[T],
@@ -58,8 +58,7 @@ impl Decisions {
     ) -> Option<usize> {
         let least = (0..all.len()).min_by(|&a, &b| value(&all[a]).total_cmp(&value(&all[b])))?;
         let own = value(&all[least]);
-        let others =
-            all.iter().filter(|other| !same(other, &all[least])).map(value).filter(|other| *other > own);
+        let others = all.iter().filter(|other| !same(other, &all[least])).map(value);
         others.for_each(|other| self.record((other - own) / other.max(1.0)));
         Some(least)
     }
