@@ -23,8 +23,8 @@ Pixel normalize_pixel(vec2 centre, bool visible, float alpha, vec4 s0, vec4 s1) 
     vec3 normal = vec3(0.0), mean = vec3(0.0);
     if (SUM_NORMALS) {
         mean = s0.yzw / s0.x;
-        // Opposite normals cancel.
-        normal = length(mean) < 1e-6 ? to_eye : normalize(s0.yzw);
+        // Opposite normals cancel. The squares of the sums themselves would underflow for splats far below a pixel.
+        normal = length(mean) < 1e-6 ? to_eye : normalize(mean);
     }
     vec3 colour = frame.albedo.rgb;
     if (SUM_COLOURS) colour = (SUM_NORMALS ? s1.yzw : s0.yzw) / total;
