@@ -14,6 +14,7 @@
 #ifdef COMPUTE
 
 #include "lib/cull_reasons.glsl"
+#include "lib/levels.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -34,6 +35,8 @@ layout(set = 1, binding = 6, std430) writeonly buffer Boxes { Box boxes[]; };
 
 // Bound of the relative rounding errors of a sum of three products.
 const float ROUNDING = 1e-6;
+// Margin of squared distances, for rounding of the box's corners and of the distances.
+const float LEVEL_ROUNDING = 1e-4;
 
 // Bounds of the values of gradient·p + constant for points p in a box.
 vec2 bounds_on(vec3 gradient, float constant, vec3 low, vec3 high) {
@@ -77,11 +80,31 @@ bool faces_away(Cluster cluster, float moved, vec3 low, vec3 high) {
     return bounds_on(cluster.axis.xyz, 0.0, low, high).x - moved >= (cluster.high.w + ROUNDING) * farthest;
 }
 
-// Cull reason of all of the cluster's surfels; DRAWN if some may be drawn.
-uint cull_reason(Cluster cluster) {
+// Whether surfels of a level with centres in the box may be of the level that is drawn there. Their cells lie within the box widened by the
+// side; the nearest point of a cell is not beyond the farthest corner of the box.
+bool may_be_drawn(uint level, vec3 low, vec3 high) {
+    vec3 farthest = max(abs(low), abs(high));
+    if (level > 0 && !suffices_at(cell_side(level), (1.0 + LEVEL_ROUNDING) * dot(farthest, farthest))) return false;
+    if (is_coarsest(level)) return true;
+    float side = cell_side(level + 1);
+    return !suffices_at(side, (1.0 - LEVEL_ROUNDING) * squared_distance_to(low - side, high + side));
+}
+
+// Whether surfels from `first` to `last` of the scene, with centres in the box, may be of the levels that are drawn there.
+bool has_drawn_level(uint first, uint last, vec3 low, vec3 high) {
+    uint beyond = level_of(last);
+    for (uint level = level_of(first); level <= beyond; level++) {
+        if (may_be_drawn(level, low, high)) return true;
+    }
+    return false;
+}
+
+// Cull reason of all of the cluster's surfels, from `first` to `last` of the scene; DRAWN if some may be drawn.
+uint cull_reason(Cluster cluster, uint first, uint last) {
     float radius = cluster.low.w;
     if (radius < 0.0) return INVALID;
     vec3 low = (cluster.low.xyz - view.eye_hi.xyz) - view.eye_lo.xyz, high = (cluster.high.xyz - view.eye_hi.xyz) - view.eye_lo.xyz;
+    if (HAS_LEVELS && !has_drawn_level(first, last, low, high)) return LEVEL;
     // Discs may be moved by ε along the camera's axis.
     float moved = frame.epsilon * radius;
     if (PERSPECTIVE && bounds_on(view.rows_hi[2].xyz, 0.0, low, high).y + moved * length(view.rows_hi[2].xyz) < 0.0) return BEHIND;
@@ -97,7 +120,12 @@ void main() {
     if (cluster == 0 && gl_WorkGroupID.z == 0) layers = 1;
     bool exists = first < chunk.count && instance_index() < chunk.instance_count;
     uint reason = OUTSIDE;
-    if (exists) reason = BOUNDED ? cull_reason(clusters[chunk.first_id / CLUSTER_SIZE + cluster]) : DRAWN;
+    if (exists && BOUNDED) {
+        uint id = chunk.first_id + first;
+        reason = cull_reason(clusters[id / CLUSTER_SIZE], id, id + min(chunk.count - first, CLUSTER_SIZE) - 1);
+    } else if (exists) {
+        reason = DRAWN;
+    }
 #ifdef TILES
     uint node = chunk.first_node + (instance_index() * chunk.instance_stride) / CLUSTER_SIZE + cluster;
     boxes[node] = Box(EMPTY_BOX.xyz, reason == DRAWN ? EMPTY_BOX.w : CULLED_CLUSTER);

@@ -29,6 +29,7 @@
 #ifdef COMPUTE
 
 #include "lib/cull_reasons.glsl"
+#include "lib/levels.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -157,6 +158,7 @@ void store_screen_clip(uint i, Disc disc, vec2 anchor) {
 uint load_disc(uint i, out Disc disc) {
     if (!is_valid(i)) return INVALID;
     vec3 p = position_of(i), n = normal_of(i);
+    if (HAS_LEVELS && !is_of_drawn_level(chunk.first_id + i, p)) return LEVEL;
     float r = radius_of(i);
     vec4 shape = ELLIPSES ? ellipse_of(i) : vec4(vec3(0.0), 1.0);
     disc.normal = n;

@@ -265,7 +265,7 @@ pub static CULL_COMPUTE: Module = Module {
     name: "cull_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("cull_compute.spv"),
-    constants: &[0, 1, 2, 15, 37, 64],
+    constants: &[0, 1, 2, 15, 37, 64, 73],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBLE_CLUSTERS, true), (&resource::CLUSTERS, false), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -275,7 +275,7 @@ pub static CULL_TILES_COMPUTE: Module = Module {
     name: "cull_tiles_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("cull_tiles_compute.spv"),
-    constants: &[0, 1, 2, 15, 37, 64],
+    constants: &[0, 1, 2, 15, 37, 64, 73],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBLE_CLUSTERS, true), (&resource::CLUSTERS, false), (&resource::BOXES, true), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -285,7 +285,7 @@ pub static FETCH_COMPUTE: Module = Module {
     name: "fetch_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_compute.spv"),
-    constants: &[0, 1, 5, 12, 13, 17, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+    constants: &[0, 1, 5, 12, 13, 17, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73],
     resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -315,7 +315,7 @@ pub static FETCH_RASTER_POINTS_COMPUTE: Module = Module {
     name: "fetch_raster_points_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_raster_points_compute.spv"),
-    constants: &[0, 1, 5, 12, 13, 17, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+    constants: &[0, 1, 5, 12, 13, 17, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73],
     resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST_ID, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -365,7 +365,7 @@ pub static FOOTPRINT_COMPUTE: Module = Module {
     name: "footprint_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("footprint_compute.spv"),
-    constants: &[0, 1, 2, 12, 13, 14, 15, 16, 21, 23, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 67, 68, 70],
+    constants: &[0, 1, 2, 12, 13, 14, 15, 16, 21, 23, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 67, 68, 70, 73],
     resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -375,7 +375,7 @@ pub static FOOTPRINT_TILES_COMPUTE: Module = Module {
     name: "footprint_tiles_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("footprint_tiles_compute.spv"),
-    constants: &[0, 1, 2, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 21, 23, 26, 27, 37, 45, 46, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 67, 68, 70],
+    constants: &[0, 1, 2, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 21, 23, 26, 27, 37, 45, 46, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 67, 68, 70, 73],
     resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::SPLAT_ATTRIBUTES, true), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::WEIGHTS, false), (&resource::SPLAT_BOXES, true), (&resource::ORDER, false), (&resource::VISIBLE_CLUSTERS, false), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -615,7 +615,7 @@ pub static POINTS_VERTEX: Module = Module {
     name: "points_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("points_vertex.spv"),
-    constants: &[0, 1, 12, 13, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+    constants: &[0, 1, 12, 13, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73],
     resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -635,7 +635,7 @@ pub static PROJECT_COMPUTE: Module = Module {
     name: "project_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("project_compute.spv"),
-    constants: &[0, 1, 2, 12, 13, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63],
+    constants: &[0, 1, 2, 12, 13, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 73],
     resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::VISIBLE_CLUSTERS, false), (&resource::NEAREST, true), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -675,7 +675,7 @@ pub static PROJECT_COUNT_ONLY_COMPUTE: Module = Module {
     name: "project_count_only_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("project_count_only_compute.spv"),
-    constants: &[0, 1, 2, 12, 13, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+    constants: &[0, 1, 2, 12, 13, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73],
     resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -954,6 +954,8 @@ pub mod constant {
     pub const FRAME_WEIGHTS: u32 = 45;
     /// `FRONTS`, first in `shaders-glsl/attribute.glsl`.
     pub const FRONTS: u32 = 69;
+    /// `HAS_LEVELS`, first in `shaders-glsl/cull.glsl`.
+    pub const HAS_LEVELS: u32 = 73;
     /// `HOST_DEPTH`, first in `shaders-glsl/composite.glsl`.
     pub const HOST_DEPTH: u32 = 40;
     /// `HOST_SAMPLES`, first in `shaders-glsl/seed.glsl`.
@@ -1860,18 +1862,18 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Composite, origin) == 16);
     const _: () = assert!(std::mem::size_of::<Composite>() == 24);
 
-    /// `Counts`, 24 bytes, first in `shaders-glsl/cull.glsl`.
+    /// `Counts`, 28 bytes, first in `shaders-glsl/cull.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Counts {
         /// Byte 0.
-        pub culled: [u32; 5],
-        /// Byte 20.
+        pub culled: [u32; 6],
+        /// Byte 24.
         pub in_clusters: u32,
     }
     const _: () = assert!(std::mem::offset_of!(Counts, culled) == 0);
-    const _: () = assert!(std::mem::offset_of!(Counts, in_clusters) == 20);
-    const _: () = assert!(std::mem::size_of::<Counts>() == 24);
+    const _: () = assert!(std::mem::offset_of!(Counts, in_clusters) == 24);
+    const _: () = assert!(std::mem::size_of::<Counts>() == 28);
 
     /// `EdgeTiles`, 20 bytes, first in `shaders-glsl/behind.glsl`.
     #[repr(C)]
@@ -2253,7 +2255,7 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(ValueRange, greatest) == 4);
     const _: () = assert!(std::mem::size_of::<ValueRange>() == 8);
 
-    /// `View`, 432 bytes, first in `shaders-glsl/attribute.glsl`.
+    /// `View`, 480 bytes, first in `shaders-glsl/attribute.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct View {
@@ -2289,8 +2291,14 @@ pub mod layout {
         pub jacobian: f32,
         /// Byte 416.
         pub first_id: u32,
+        /// Byte 420.
+        pub level_spacing: f32,
+        /// Byte 424.
+        pub level_reach: f32,
         /// Unused: the layout leaves a gap here.
-        pub _pad16: [u8; 12],
+        pub _pad18: [u8; 4],
+        /// Byte 432.
+        pub level_starts: [[u32; 4]; 3],
     }
     const _: () = assert!(std::mem::offset_of!(View, rows_hi) == 0);
     const _: () = assert!(std::mem::offset_of!(View, rows_lo) == 48);
@@ -2308,17 +2316,20 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(View, key_slope) == 408);
     const _: () = assert!(std::mem::offset_of!(View, jacobian) == 412);
     const _: () = assert!(std::mem::offset_of!(View, first_id) == 416);
-    const _: () = assert!(std::mem::size_of::<View>() == 432);
+    const _: () = assert!(std::mem::offset_of!(View, level_spacing) == 420);
+    const _: () = assert!(std::mem::offset_of!(View, level_reach) == 424);
+    const _: () = assert!(std::mem::offset_of!(View, level_starts) == 432);
+    const _: () = assert!(std::mem::size_of::<View>() == 480);
 
-    /// `Views`, 15984 bytes, first in `shaders-glsl/attribute.glsl`.
+    /// `Views`, 16320 bytes, first in `shaders-glsl/attribute.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Views {
         /// Byte 0.
-        pub views: [View; 37],
+        pub views: [View; 34],
     }
     const _: () = assert!(std::mem::offset_of!(Views, views) == 0);
-    const _: () = assert!(std::mem::size_of::<Views>() == 15984);
+    const _: () = assert!(std::mem::size_of::<Views>() == 16320);
 
     /// `VisibleClusters`, 16 bytes, first in `shaders-glsl/cull.glsl`.
     #[repr(C)]

@@ -5,14 +5,15 @@ const uint EYE_PLANE = 1; // the disc reaches the eye plane, or nearly does
 const uint BACK = 2;      // the normal faces away, back faces are culled, and the surfel is not two-sided
 const uint OUTSIDE = 3;   // outside the viewport, or without an area on it
 const uint INVALID = 4;   // marked by a radius of 0, or with an image too large for floats
-const uint DRAWN = 5;
+const uint LEVEL = 5;     // another level of detail is drawn at its position
+const uint DRAWN = 6;
 
 #ifdef COMPUTE
 
 layout(constant_id = 2) const bool COUNT = false;
 
 layout(set = 2, binding = 5, std430) buffer Counts {
-    uint culled[5];
+    uint culled[6];
     uint in_clusters; // of the culled ones, those of culled clusters
 };
 

@@ -63,10 +63,13 @@ struct View {
     float key_slope;
     float jacobian;    // |det| of the rows, or of parallel rays' x and y: scales √|V|
     uint first_id;     // id of the instance's first point
+    float level_spacing; // side of the cells of the finest level of detail, in the scene's unit
+    float level_reach;   // distance at which a cell of side 1 suffices, in sides; with parallel rays, the side that just suffices is 1 / this
+    uvec4 level_starts[3]; // first surfel of each level, ~0 beyond the last one
 };
 
 // As many as fit 16 KiB, the least maxUniformBufferRange.
-const uint MOST_INSTANCES = 37;
+const uint MOST_INSTANCES = 34;
 
 layout(set = 0, binding = 6, std140) uniform Views { View views[MOST_INSTANCES]; };
 

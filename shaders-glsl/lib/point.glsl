@@ -2,6 +2,7 @@
 
 #include "lib/cull_reasons.glsl"
 #include "lib/double_float.glsl"
+#include "lib/levels.glsl"
 #include "lib/pixel_row.glsl"
 
 layout(constant_id = 1) const bool CULL_BACK = false;
@@ -34,6 +35,7 @@ uint point_of(uint i, out Point point) {
     point = Point(ivec2(-1), vec2(0.0), 0.0, 0.0);
     if (!is_valid(i)) return INVALID;
     vec3 p = position_of(i), n = normal_of(i);
+    if (HAS_LEVELS && !is_of_drawn_level(chunk.first_id + i, p)) return LEVEL;
     vec2 dx = two_sum(p.x, -view.eye_hi.x), dy = two_sum(p.y, -view.eye_hi.y), dz = two_sum(p.z, -view.eye_hi.z);
     vec3 hi = vec3(dx.x, dy.x, dz.x), lo = vec3(dx.y, dy.y, dz.y) - view.eye_lo.xyz;
     float z = dot_double(hi, lo, view.forward_hi.xyz, view.forward_lo.xyz).x;

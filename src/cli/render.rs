@@ -9,8 +9,8 @@ use surfel::embed::Measured;
 use surfel::formats::colour_bar::ColourBar;
 use surfel::formats::image::{Encoded, Output, write};
 use surfel::frame::times::Times;
-use surfel::geometry::{Camera, Extent, Model};
-use surfel::load::{Coloured, Colouring, LoadOptions, LoadedModel, load};
+use surfel::geometry::{Camera, Extent, Levels, Model, Parts};
+use surfel::load::{Coloured, Colouring, LoadOptions, load};
 use surfel::settings::Shading;
 use surfel::settings::methods::{Method, pull_push};
 use surfel::{Error, Outputs, Picture, Progress, Result, Settings, SplatCounts};
@@ -18,7 +18,7 @@ use surfel::{Error, Outputs, Picture, Progress, Result, Settings, SplatCounts};
 /// A picture to render, with Vulkan or the reference.
 pub struct Task<'a> {
     /// The scene.
-    pub scene: &'a Model,
+    pub scene: Parts<'a>,
     /// The method, without the changes of its axes.
     pub method: Method,
     /// The camera.
@@ -69,19 +69,25 @@ pub fn run(args: &Render) -> Result<()> {
         texture: args.colours.texture()?,
         ..Default::default()
     };
-    let loaded = load(&args.inputs, &options, &*bars)?;
-    let (method, scene) = (method(args.method, &loaded.model)?, &loaded.model);
+    let mut loaded = load(&args.inputs, &options, &*bars)?;
+    let method = method(args.method, &loaded.model)?;
     let settings = args.settings(&method);
     settings.check()?;
     settings.check_outputs(args.outputs())?;
-    let extent = Extent::of(scene);
+    let extent = Extent::of(&loaded.model);
     let extent = extent.ok_or_else(|| Error::Usage("the inputs hold nothing that can be drawn".into()))?;
     let (middle, up) = (extent.centre(), camera::up(&args.camera, file));
     let framed = args.turntable.map(|_| extent.turned_about(middle, up.normalize_or(DVec3::Y)));
     let camera = camera::make(&args.camera, file, framed.as_ref().unwrap_or(&extent), args.size)?;
-    if let Some(note) = summary::culled_backs(&scene.surfels, &camera, &settings).filter(|_| !args.quiet) {
+    if let Some(note) =
+        summary::culled_backs(&loaded.model.surfels, &camera, &settings).filter(|_| !args.quiet)
+    {
         progress::say(&note);
     }
+    let contents = summary::parts(&loaded.model);
+    let levels =
+        (settings.lod > 0.0).then(|| Levels::of(std::mem::take(&mut loaded.model.surfels))).transpose()?;
+    let scene = parts(&loaded.model, levels.as_ref());
     let (layers, size, frames, progress) = (args.outputs(), args.size, args.frames, &*bars);
     let split = args.times == Some(PassTimes::Split);
     let task = Task { scene, method, camera, settings, size, layers, frames, split, progress };
@@ -116,7 +122,7 @@ pub fn run(args: &Render) -> Result<()> {
     if let Some(output) = &args.json {
         files::write_text(output, &Report::new(args, &loaded, &task, &outcome).to_json()?)?;
     }
-    print_summary(args, &loaded, &outcome);
+    print_summary(args, &contents, &outcome);
     Ok(())
 }
 
@@ -192,7 +198,7 @@ fn ratio(fused: &Times, split: &Times) -> String {
 }
 
 /// Prints the summary to standard error; standard output is left to the picture.
-fn print_summary(args: &Render, loaded: &LoadedModel, outcome: &Outcome) {
+fn print_summary(args: &Render, contents: &str, outcome: &Outcome) {
     if args.times.is_some() {
         if let Some(Gpu { description, usage, .. }) = &outcome.gpu {
             progress::say(&format!(
@@ -212,10 +218,10 @@ fn print_summary(args: &Render, loaded: &LoadedModel, outcome: &Outcome) {
         ));
     }
     if !args.quiet {
-        let ([width, height], parts) = (args.size, summary::parts(&loaded.model));
+        let [width, height] = args.size;
         let drawn = outcome.counts.map(|counts| format!(", {} drawn", counts.drawn)).unwrap_or_default();
         let out = Path::new(&args.output).display();
-        progress::say(&format!("{out}: {width}x{height}, {parts}{drawn}"));
+        progress::say(&format!("{out}: {width}x{height}, {contents}{drawn}"));
     }
 }
 
@@ -228,4 +234,12 @@ fn check_outputs(args: &Render, out: &Output) -> Result<()> {
     let Some(json) = &args.json else { return Ok(()) };
     files::check(json)?;
     files::check_distinct("--json", json, std::iter::once(&args.output).chain(&args.inputs))
+}
+
+/// The scene, with its levels of detail in the place of its points if there are any.
+fn parts<'a>(model: &'a Model, levels: Option<&'a Levels>) -> Parts<'a> {
+    match levels {
+        Some(Levels { surfels, table }) => Parts { surfels, levels: Some(table), ..model.into() },
+        None => model.into(),
+    }
 }

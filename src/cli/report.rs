@@ -117,6 +117,7 @@ fn settings(settings: &Settings) -> Value {
         lowpass,
         pixel_filter,
         widen,
+        lod,
         epsilon,
         cull,
         alpha,
@@ -128,14 +129,14 @@ fn settings(settings: &Settings) -> Value {
     let Splatting { footprint, kernel, filter, visibility, normalization, shade } = splatting;
     if let Some(pull_push) = pull_push {
         return json!({
-            "rules": pull_push.rules.name(), "cull": cull.name(), "shading": shading.name(), "background": background,
+            "rules": pull_push.rules.name(), "lod": lod, "cull": cull.name(), "shading": shading.name(), "background": background,
             "lighting": light(lighting),
         });
     }
     json!({
         "footprint": footprint.name(), "kernel": kernel.to_string(), "filter": filter.name(),
         "visibility": visibility.name(), "normalization": normalization.name(), "shade": shade.name(),
-        "cutoff": cutoff, "lowpass": lowpass, "pixel_filter": pixel_filter, "widen": widen.name(), "epsilon": epsilon, "cull": cull.name(),
+        "cutoff": cutoff, "lowpass": lowpass, "pixel_filter": pixel_filter, "widen": widen.name(), "lod": lod, "epsilon": epsilon, "cull": cull.name(),
         "alpha": alpha.name(), "edges": edges.name(), "shading": shading.name(),
         "background": background, "lighting": light(lighting),
     })
@@ -164,7 +165,7 @@ fn pass((name, ms): (&'static str, Statistics)) -> Value {
 /// Counts of points, each of which counts once: read = dropped + culled + drawn.
 fn tally(loaded: &LoadedModel, counts: SplatCounts) -> Value {
     let Dropped { position, transparent } = loaded.dropped;
-    let SplatCounts { drawn, behind, eye_plane, back, outside, invalid } = counts;
+    let SplatCounts { drawn, behind, eye_plane, back, outside, invalid, other_level } = counts;
     let Estimated { unused, outliers, .. } = loaded.estimated;
     json!({
         "read": loaded.read,
@@ -173,6 +174,7 @@ fn tally(loaded: &LoadedModel, counts: SplatCounts) -> Value {
         },
         "culled": {
             "behind": behind, "eye_plane": eye_plane, "back": back, "outside": outside, "invalid": invalid,
+            "other_level": other_level,
         },
         "drawn": drawn,
     })

@@ -72,6 +72,8 @@ pub struct SplatCounts {
     pub outside: u32,
     /// Not [valid](crate::geometry::Surfels::is_valid), or with an image too large for float32.
     pub invalid: u32,
+    /// Of another level of detail than the one that is drawn at their positions, in scenes with levels.
+    pub other_level: u32,
 }
 
 /// Renders frames of one size on one device, one frame at a time.
@@ -207,8 +209,8 @@ impl Renderer {
 impl SplatCounts {
     /// Counts of so many surfels, of which these are culled.
     pub(crate) fn new(surfels: u64, Counts { culled, .. }: Counts) -> Self {
-        let [behind, eye_plane, back, outside, invalid] = culled;
+        let [behind, eye_plane, back, outside, invalid, other_level] = culled;
         let drawn = surfels.saturating_sub(culled.iter().copied().map(u64::from).sum()) as u32;
-        Self { drawn, behind, eye_plane, back, outside, invalid }
+        Self { drawn, behind, eye_plane, back, outside, invalid, other_level }
     }
 }

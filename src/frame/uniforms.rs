@@ -2,7 +2,7 @@
 
 use super::splat_buffers::ALIGNMENT;
 use crate::error::{Error, Result};
-use crate::geometry::{Bounds, Camera, Projection};
+use crate::geometry::{Bounds, Camera, LevelTable, MOST_LEVELS, Projection};
 use crate::scene::instance::{Placed, Similarity, first_ids};
 use crate::settings::Settings;
 use crate::settings::splatting::Kernel;
@@ -47,6 +47,8 @@ impl Uniforms {
         let (rays, projection) = camera_rays(camera, size)?;
         let mut view = view(&rays, &projection, origin);
         apply_placement(&mut view, settings, &Similarity::IDENTITY);
+        let table = scenes.first().and_then(|placed| placed.scene.level_table());
+        apply_levels(&mut view, settings, table);
         let frame = frame(settings, size, (&rays, &projection), bounds.as_ref());
         let instanced = if single_origin.is_some() { &[] } else { scenes };
         let instances = instanced.iter().zip(first_ids(scenes));
@@ -77,7 +79,21 @@ fn instance_view(
     let mut view = view(&rays, &projection, placed.scene.origin());
     view.first_id = first;
     apply_placement(&mut view, settings, &placement);
+    apply_levels(&mut view, settings, placed.scene.level_table());
     Ok(view)
+}
+
+/// Sets the levels of detail of a scene, and how far they reach.
+fn apply_levels(view: &mut View, settings: &Settings, table: Option<&LevelTable>) {
+    let [x, y, z, _] = view.flat_rows[1];
+    let focal = DVec3::new(x.into(), y.into(), z.into()).length();
+    view.level_reach = (focal / f64::from(settings.lod)) as f32;
+    view.level_starts = [[u32::MAX; 4]; MOST_LEVELS / 4];
+    let Some(table) = table else { return };
+    view.level_spacing = table.spacing();
+    for (target, start) in view.level_starts.as_flattened_mut().iter_mut().zip(table.starts()) {
+        *target = *start;
+    }
 }
 
 /// Sets scale and rotation of a placed scene, and the lights in its axes.

@@ -142,6 +142,8 @@ pub struct SceneVariant {
     pub unordered: bool,
     /// The scene has bounds of its clusters, and the frame culls these.
     pub bounded: bool,
+    /// Some surfels stand for others from afar.
+    pub levels: bool,
 }
 
 /// Optional streams that a scene has.
@@ -392,6 +394,7 @@ impl SceneVariant {
             instanced,
             unordered: streams.unordered && frame.is_tiled(),
             bounded: streams.clusters && frame.clusters,
+            levels: streams.levels,
         }
     }
 
@@ -438,6 +441,7 @@ impl SceneVariant {
             .with(constant::STORED_COLOURS, self.unchecked.map_or(0, |colours| colours as u32))
             .with(constant::ELLIPSES, self.ellipses)
             .with(constant::TWO_SIDED, self.two_sided)
+            .with(constant::HAS_LEVELS, self.levels)
             .with(constant::CURVATURES, self.curvatures)
             .with(constant::CLIPS, self.clips)
             .with(constant::BEYOND_CLIPS, self.frame.coverage && self.clips)

@@ -30,7 +30,7 @@ impl Surfels {
         let keys = morton::keys(&self.positions);
         let bits = bits(&keys, count);
         let cells: Vec<&[(u64, u32)]> = keys.chunk_by(|a, b| prefix(a.0 ^ b.0, bits) == 0).collect();
-        let light = decode_table();
+        let light = srgb::decode_table();
         let merged: Vec<Merged> = cells
             .par_iter()
             .flat_map_iter(|cell| self.merge_cell(cell, &light).into_iter().flatten())
@@ -151,10 +151,6 @@ fn bits(keys: &[(u64, u32)], count: usize) -> u32 {
             boxes <= count
         })
         .count() as u32
-}
-
-fn decode_table() -> [f32; 256] {
-    array::from_fn(|code| srgb::decode(code as f64 / 255.0) as f32)
 }
 
 #[cfg(test)]

@@ -35,6 +35,11 @@ fn rounded(linear: f32) -> u8 {
     (encode(f64::from(linear).clamp(0.0, 1.0)) * 255.0).round() as u8
 }
 
+/// Linear light of each 8-bit code.
+pub(crate) fn decode_table() -> [f32; 256] {
+    std::array::from_fn(|code| decode(code as f64 / 255.0) as f32)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

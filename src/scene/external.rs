@@ -56,6 +56,7 @@ impl Scene {
             two_sided: external.two_sided,
             ellipses: external.ellipses,
             clips: None,
+            levels: None,
             clusters: None,
             colours: external.colours,
             weights: None,

@@ -18,7 +18,7 @@ mod update;
 mod weights;
 
 use crate::error::{Error, Result};
-use crate::geometry::{Bounds, Colours, Curvature, Ellipse, Parts, Primitives, Surfels, Texture};
+use crate::geometry::{Bounds, Colours, Curvature, Ellipse, LevelTable, Parts, Primitives, Surfels, Texture};
 use crate::vk::shaders::{Resource, resource};
 use crate::vk::{Binding, Buffer, Device, Uploads};
 use bytemuck::{Pod, Zeroable};
@@ -57,6 +57,8 @@ pub struct Scene {
     two_sided: bool,
     ellipses: Option<Stream>,
     clips: Option<ClipStream>,
+    /// Which surfels stand for others from afar.
+    levels: Option<LevelTable>,
     /// Bounds by which frames cull; absent for surfels in arbitrary order and in buffers of the host, and beyond the limits of the device.
     clusters: Option<Clusters>,
     colours: Option<Stream>,
@@ -149,7 +151,12 @@ impl Scene {
         let stream = |name, bytes: &[u8], size| {
             uploads.buffer(name, bytes).map(|buffer| Stream::side_by_side(buffer, size))
         };
-        let order = Order::of(&surfels.positions);
+        // Each level is sorted.
+        let points = parts
+            .levels
+            .and_then(|table| table.starts().first())
+            .map_or(surfels.len(), |start| *start as usize);
+        let order = Order::of(&surfels.positions[..points]);
         // The bounds of all clusters are bound at once.
         let most = device.capabilities().max_storage_buffer_range;
         let bounded = order == Order::Coherent && count > 0 && clusters::bytes(count) <= most;
@@ -180,6 +187,7 @@ impl Scene {
                 .as_ref()
                 .map(|clips| ClipStream::new(uploads, clips, &chunks))
                 .transpose()?,
+            levels: parts.levels.filter(|table| !table.starts().is_empty()).cloned(),
             clusters: bounded.then(|| Clusters::new(uploads, surfels)).transpose()?,
             primitives: PrimitiveStreams::new(device, uploads, &parts)?,
             texture: image.map(|image| TextureStream::new(device, uploads, image)).transpose()?,
@@ -245,6 +253,11 @@ impl Scene {
         buffers.map(Buffer::size).sum::<u64>() + primitives
     }
 
+    /// Which of the surfels stand for others from afar, if any do.
+    pub fn level_table(&self) -> Option<&LevelTable> {
+        self.levels.as_ref()
+    }
+
     /// Chunks of surfels: ranges that one descriptor set can bind.
     pub fn chunks(&self) -> &[Range<u64>] {
         &self.chunks
@@ -267,6 +280,7 @@ impl Scene {
             // Fewer buffers than every device has for shaders: clips and weights are of captured files, which are sorted.
             unordered: self.order == Order::Arbitrary && self.clips.is_none() && self.weights.is_none(),
             clusters: self.clusters.is_some(),
+            levels: self.levels.is_some(),
         }
     }
 

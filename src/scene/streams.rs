@@ -32,6 +32,8 @@ pub struct Streams {
     pub unordered: bool,
     /// The bounds of clusters of consecutive surfels are known, so frames by compute shaders cull these.
     pub clusters: bool,
+    /// Some surfels stand for others from afar.
+    pub levels: bool,
 }
 
 impl Streams {
@@ -51,6 +53,7 @@ impl Streams {
             unchecked: false,
             unordered: false,
             clusters: true,
+            levels: false,
         }
     }
 

@@ -97,6 +97,10 @@ impl Scene {
         let marks = self.clips.is_some() || self.weights.is_some() || self.texture.is_some();
         if self.of_host {
             return refuse("they are in buffers of the host: write them there");
+        } else if self.levels.is_some() {
+            return refuse(
+                "the scene has levels of detail, which would not follow: upload the points without",
+            );
         } else if range.end > self.capacity() {
             return refuse(&format!("the scene has room for {}", self.capacity()));
         } else if changes.ellipses.is_some() && self.ellipses.is_none() {

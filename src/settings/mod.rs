@@ -31,6 +31,9 @@ pub struct Settings {
     pub pixel_filter: f32,
     /// Splats that the low-pass filter widens.
     pub widen: Widen,
+    /// Level of detail, px: cells of at most this side are drawn as one surfel, in scenes with levels ([`crate::geometry::Levels`]); 0 draws all
+    /// points.
+    pub lod: f32,
     /// Depth tolerance ε in surfel radii: splats at most this far behind the nearest one, along the viewing ray, are blended.
     pub epsilon: f32,
     /// Back-face culling.
@@ -57,6 +60,7 @@ impl Default for Settings {
             lowpass: 1.0,
             pixel_filter: 0.75,
             widen: Widen::Small,
+            lod: 0.0,
             epsilon: 1.0,
             cull: Cull::Auto,
             alpha: Alpha::Coverage,
@@ -72,6 +76,8 @@ impl Settings {
     /// Range of cut-offs, σ. A Gaussian is below 10⁻¹³ beyond 8 σ. Lighting needs sums of normals whose squares do not underflow in
     /// float32, as they do for weights below 10⁻¹⁹.
     pub const CUTOFFS: RangeInclusive<f32> = 0.1..=8.0;
+    /// Largest level of detail, px.
+    pub const MOST_LOD: f32 = 1000.0;
     /// Largest low-pass variance, px²: the filter widens a splat to at most 10 px per σ.
     pub const MOST_LOWPASS: f32 = 100.0;
 
@@ -193,6 +199,13 @@ impl Settings {
                 "the variance of the pixel filter is {}: give a number of px² from 0 to {}",
                 self.pixel_filter,
                 Self::MOST_PIXEL_FILTER
+            )));
+        }
+        if !(0.0..=Self::MOST_LOD).contains(&self.lod) {
+            return Err(Error::Usage(format!(
+                "the level of detail is {}: give a number of px from 0 to {}",
+                self.lod,
+                Self::MOST_LOD
             )));
         }
         self.lighting.check()?;

@@ -119,6 +119,7 @@ impl SavedSettings {
             cutoff: self.cutoff,
             lowpass: self.lowpass,
             pixel_filter: self.pixel_filter,
+            lod: 0.0,
             widen: Widen::named(&self.widen)?,
             epsilon: self.epsilon,
             cull: Cull::named(&self.cull)?,

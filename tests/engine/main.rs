@@ -22,6 +22,7 @@ mod frames;
 mod hard;
 mod hostile;
 mod instances;
+mod levels;
 mod lines;
 mod materials;
 mod mesh_outlines;

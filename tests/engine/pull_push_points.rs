@@ -92,7 +92,7 @@ fn assert_same(name: &str, a: &Rendered, b: &Rendered) {
 
 /// Numbers of surfels by reason. One that is back and outside may count as either.
 fn reasons(counts: SplatCounts) -> [u32; 5] {
-    let SplatCounts { drawn, behind, eye_plane, back, outside, invalid } = counts;
+    let SplatCounts { drawn, behind, eye_plane, back, outside, invalid, .. } = counts;
     [drawn, behind, eye_plane, back + outside, invalid]
 }
 
@@ -136,7 +136,7 @@ fn drawn_points_are_computed_ones_bit_for_bit_and_as_many() {
                 case.settings.pull_push.unwrap(),
             );
             let seen = reference.unwrap().project(case.parts).counts;
-            let SplatCounts { drawn, behind, eye_plane, back, outside, invalid } = made.counts;
+            let SplatCounts { drawn, behind, eye_plane, back, outside, invalid, .. } = made.counts;
             let counts = [drawn, behind, eye_plane, back, outside, invalid].map(|count| count as usize);
             let expected = [seen.drawn, seen.behind, seen.eye_plane, seen.back, seen.outside, seen.invalid];
             assert_eq!(counts, expected, "{}", case.name);

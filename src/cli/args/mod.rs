@@ -161,6 +161,15 @@ pub struct Render {
     /// The render settings
     #[command(flatten, next_help_heading = "Picture")]
     pub render_settings: RenderSettings,
+    /// Level of detail, px: surfels that stand for all points of a cell are drawn where its side is at most this; 0 draws all points
+    #[arg(
+        long,
+        value_name = "PX",
+        default_value_t = 0.0,
+        help_heading = "Picture",
+        allow_hyphen_values = true
+    )]
+    pub lod: f32,
     /// The device or the reference that renders
     #[command(flatten, next_help_heading = "Device")]
     pub backend: Backend,
@@ -303,7 +312,7 @@ impl Axes {
 impl Render {
     /// The settings of a method with the changes of the options.
     pub fn settings(&self, method: &Method) -> Settings {
-        self.render_settings.settings(&self.axes, method)
+        Settings { lod: self.lod, ..self.render_settings.settings(&self.axes, method) }
     }
 }
 
@@ -318,6 +327,7 @@ impl RenderSettings {
             lowpass: self.lowpass.unwrap_or(preset.lowpass),
             pixel_filter: self.pixel_filter.unwrap_or(preset.pixel_filter),
             widen: self.widen.unwrap_or(preset.widen),
+            lod: preset.lod,
             epsilon: self.epsilon,
             cull: self.cull.unwrap_or(preset.cull),
             alpha: self.alpha.unwrap_or(preset.alpha),

@@ -125,6 +125,7 @@ mod tests {
                 unchecked: rich,
                 unordered: rich,
                 clusters: rich,
+                levels: rich,
             };
             for (alpha, rasterizer) in [Alpha::Mask, Alpha::Coverage]
                 .into_iter()

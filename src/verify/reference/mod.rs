@@ -24,6 +24,7 @@ mod filter;
 mod filtered_bounds;
 mod footprint;
 mod image;
+pub mod levels;
 mod nearest;
 mod normalize;
 mod projected_scene;
@@ -136,6 +137,14 @@ pub fn render<'a>(
     let surfels = parts.surfels;
     settings.splatting.normalization.check_weights(surfels.weights.is_some())?;
     settings.check_primitives(parts.primitives.is_some())?;
+    if let Some(table) = parts.levels {
+        let (surfels, others) = levels::drawn(surfels, table, camera, size, settings)?;
+        let parts = Parts { surfels: &surfels, levels: None, ..parts };
+        let mut frame = render(parts, camera, size, settings, progress)?;
+        frame.counts.invalid -= others;
+        frame.counts.other_level = others;
+        return Ok(frame);
+    }
     if let Some(rules) = settings.pull_push {
         let frame = pull_push::render(parts, camera, size, settings, rules, progress)?;
         return Ok(filter::pass(settings, frame));

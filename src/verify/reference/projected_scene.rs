@@ -21,6 +21,8 @@ pub struct Counts {
     pub outside: usize,
     /// Culled as [`Culled::Invalid`].
     pub invalid: usize,
+    /// Of another level of detail than the one that is drawn there: see [`super::levels`].
+    pub other_level: usize,
     /// Surfels that are drawn.
     pub drawn: usize,
 }
@@ -57,6 +59,7 @@ impl ProjectedScene {
             back: count(Culled::Back),
             outside: count(Culled::Outside),
             invalid: count(Culled::Invalid),
+            other_level: 0,
             drawn: 0,
         };
         let splats: Vec<Splat> = all.into_iter().flatten().collect();

@@ -236,7 +236,7 @@ fn show_detail(ui: &mut Ui, detail: &FrameDetail, settings: &Settings, frame: f6
 
 /// Shows the counts of drawn and culled surfels.
 fn show_counts(ui: &mut Ui, counts: &SplatCounts) {
-    let SplatCounts { drawn, behind, eye_plane, back, outside, invalid } = *counts;
+    let SplatCounts { drawn, behind, eye_plane, back, outside, invalid, other_level } = *counts;
     Grid::new("counts").num_columns(2).show(ui, |ui| {
         for (name, count, text) in [
             ("drawn", drawn, "Surfels that the picture shows."),
@@ -245,6 +245,7 @@ fn show_counts(ui: &mut Ui, counts: &SplatCounts) {
             ("back", back, "Culled: the normal faces away from the eye."),
             ("outside", outside, "Culled: outside the picture, or without an area on it."),
             ("invalid", invalid, "Culled: a value is not finite or not valid."),
+            ("other level", other_level, "Not drawn: another level of detail is drawn there."),
         ] {
             ui.label(name).on_hover_text(text);
             ui.monospace(format!("{count:>10}"));

@@ -151,7 +151,16 @@ fn surfels_are_culled_in_order_and_counted() {
     let counts = |cull| {
         render(&scene(&discs), &perspective(), SIZE, &Settings { cull, ..plain() }, &()).unwrap().counts
     };
-    let back = Counts { surfels: 6, behind: 1, eye_plane: 1, back: 1, outside: 1, invalid: 0, drawn: 2 };
+    let back = Counts {
+        surfels: 6,
+        behind: 1,
+        eye_plane: 1,
+        back: 1,
+        outside: 1,
+        invalid: 0,
+        other_level: 0,
+        drawn: 2,
+    };
     assert_eq!(counts(Cull::Back), back);
     assert_eq!(counts(Cull::None), Counts { back: 0, drawn: 3, ..back });
 }

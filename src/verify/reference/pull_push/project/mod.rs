@@ -62,6 +62,7 @@ pub fn pass(frame: &Reconstruction, parts: Parts<'_>, progress: &dyn Progress) -
         back: count(Culled::Back),
         outside: count(Culled::Outside),
         invalid: count(Culled::Invalid),
+        other_level: 0,
         drawn: points.iter().filter(|p| p.is_ok()).count(),
     };
     let size = frame.projector.size.to_array().map(|side| side as u32);

@@ -1,0 +1,130 @@
+use super::*;
+use crate::geometry::{Bounds, Weights};
+use crate::verify::scenes;
+use glam::DVec3;
+use std::collections::HashMap;
+
+fn bumpy(points: u32) -> Surfels {
+    scenes::open(&format!("scene:bumpy-sphere?points={points}")).unwrap()
+}
+
+/// Cells of a level of all points, with the points in them.
+fn cells(points: &Surfels, side: f32) -> HashMap<IVec3, Vec<usize>> {
+    let mut cells: HashMap<IVec3, Vec<usize>> = HashMap::new();
+    (0..points.len()).for_each(|i| cells.entry(cell_of(points.positions[i], side)).or_default().push(i));
+    cells
+}
+
+#[test]
+fn every_surfel_is_the_mean_of_the_points_in_its_cell() {
+    let points = bumpy(30_000);
+    let levels = Levels::of(points.clone()).unwrap();
+    assert_eq!(levels.points(), 0..points.len());
+    levels.surfels.check().unwrap();
+    assert_eq!(levels.surfels.count_invalid(), 0);
+    let Some(Colours::Srgb8(codes)) = &points.colours else { panic!("the scene has colours") };
+    let light = |i: usize| DVec3::from_array([0, 1, 2].map(|c| srgb::decode(f64::from(codes[i][c]) / 255.0)));
+    for (number, start) in levels.table.starts().iter().enumerate() {
+        let side = levels.table.cell_side(number + 1).unwrap();
+        let end = levels.table.starts().get(number + 1).map_or(levels.surfels.len(), |end| *end as usize);
+        let mut cells = cells(&points, side);
+        let level = *start as usize..end;
+        let mut sides: HashMap<IVec3, usize> = HashMap::new();
+        level
+            .clone()
+            .for_each(|i| *sides.entry(cell_of(levels.surfels.positions[i], side)).or_default() += 1);
+        let (mut tested, count) = (0, level.len());
+        for i in level {
+            assert_eq!(levels.table.level_of(i), number + 1);
+            let (position, normal) = (levels.surfels.positions[i], levels.surfels.normals[i]);
+            let cell = cell_of(position, side);
+            // Each of two surfels in a cell is of some of its points.
+            let own = &cells[&cell];
+            if sides[&cell] > 1 {
+                continue;
+            }
+            tested += 1;
+            let area = |i: usize| f64::from(points.radii[i]).powi(2);
+            let total: f64 = own.iter().map(|&i| area(i)).sum();
+            let mean =
+                |of: &dyn Fn(usize) -> DVec3| own.iter().map(|&i| area(i) * of(i)).sum::<DVec3>() / total;
+            let exact = mean(&|i| points.positions[i].as_dvec3());
+            assert!(position.as_dvec3().distance(exact) < 1e-6, "{position} {exact}");
+            let exact = mean(&|i| points.normals[i].as_dvec3()).normalize();
+            assert!(normal.as_dvec3().distance(exact) < 1e-5);
+            let Some(Colours::Srgb8(merged)) = &levels.surfels.colours else { panic!("no colours") };
+            let exact = mean(&light).to_array().map(|c| srgb::encode8(c as f32));
+            assert_eq!(merged[i][..3], exact[..]);
+        }
+        assert!(2 * tested >= count || count < 2 * FEW, "level {}: {tested} of {count}", number + 1);
+        // Every point is in the cell of a surfel.
+        (*start as usize..end).for_each(|i| {
+            cells.remove(&cell_of(levels.surfels.positions[i], side));
+        });
+        assert!(cells.is_empty(), "level {}: {} cells lack a surfel", number + 1, cells.len());
+    }
+}
+
+#[test]
+fn levels_are_of_ever_fewer_and_larger_surfels() {
+    let points = bumpy(50_000);
+    let levels = Levels::of(points.clone()).unwrap();
+    let starts = levels.table.starts();
+    let mut ends: Vec<usize> = starts.iter().skip(1).map(|start| *start as usize).collect();
+    ends.push(levels.surfels.len());
+    let counts: Vec<usize> = starts.iter().zip(&ends).map(|(start, end)| end - *start as usize).collect();
+    assert!(
+        LEAST_SHARE * counts[0] <= points.len() && counts.windows(2).all(|pair| 2 * pair[1] < pair[0]),
+        "{counts:?}"
+    );
+    assert!(counts.len() >= 4 && *counts.last().unwrap() <= FEW, "{counts:?}");
+    // All together they add less than half of the points.
+    assert!(2 * counts.iter().sum::<usize>() < points.len());
+    // Discs overlap: their areas exceed the sphere's, and do not grow with the level.
+    for (start, end) in starts.iter().zip(&ends).take(counts.len() - 1) {
+        let radii = &levels.surfels.radii[*start as usize..*end];
+        let area: f32 = radii.iter().map(|r| std::f32::consts::PI * r * r).sum();
+        let sphere = 4.0 * std::f32::consts::PI;
+        assert!(area > 1.5 * sphere && area < 6.0 * sphere, "{}", area / sphere);
+    }
+    let bounds = Bounds::of(&points.positions).unwrap();
+    let all = Bounds::of(&levels.surfels.positions).unwrap();
+    assert!(bounds.min.cmple(all.min).all() && bounds.max.cmpge(all.max).all());
+}
+
+#[test]
+fn both_sides_of_a_sheet_stay_and_streams_are_as_long_as_the_surfels() {
+    let mut sheet = scenes::open("scene:plane?points=5000").unwrap();
+    let back = Surfels { normals: sheet.normals.iter().map(|n| -*n).collect(), ..sheet.clone() };
+    sheet.positions.extend(&back.positions);
+    sheet.normals.extend(&back.normals);
+    sheet.radii.extend(&back.radii);
+    sheet.colours = None;
+    sheet.ellipses = Some(sheet.normals.iter().map(|n| Ellipse::circle(*n)).collect());
+    sheet.curvatures = Some(vec![Default::default(); sheet.len()]);
+    sheet.two_sided = Some(vec![false; sheet.len()]);
+    let levels = Levels::of(sheet).unwrap();
+    levels.surfels.check().unwrap();
+    let aggregated = levels.points().end..levels.surfels.len();
+    let front =
+        levels.surfels.normals[aggregated.clone()].iter().filter(|n| n.dot(back.normals[0]) < 0.0).count();
+    assert_eq!(2 * front, aggregated.len());
+}
+
+#[test]
+fn few_points_have_no_levels_and_weights_are_refused() {
+    let few = bumpy(100);
+    let levels = Levels::of(few.clone()).unwrap();
+    assert_eq!((levels.surfels, levels.table), (few.clone(), LevelTable::default()));
+    let mut coincident = bumpy(1_000);
+    coincident.positions.fill(Vec3::new(0.3, 2.0, -1.0));
+    let levels = Levels::of(coincident).unwrap();
+    assert!(levels.table.starts().len() <= 1 && levels.surfels.len() <= 1_002);
+    let weights = Some(Weights::collect((0..100).map(|_| (1.0, None))));
+    let error = Levels::of(Surfels { weights, ..few }).unwrap_err().to_string();
+    assert!(error.contains("weights"), "{error}");
+    let mut broken = bumpy(1_000);
+    (broken.positions[3].x, broken.radii[7]) = (f32::NAN, 0.0);
+    let levels = Levels::of(broken).unwrap();
+    assert_eq!(levels.surfels.count_invalid(), 2);
+}
