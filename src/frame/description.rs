@@ -41,7 +41,7 @@ pub fn describe(
     settings.check_outputs(options.outputs)?;
     let uniforms = Uniforms::new(camera, settings, options.size, scenes)?;
     let workgroup = workgroup_of(device, extent_of_frame(device, scenes));
-    let splats_per_tile = total_splats_per_tile(scenes, camera, options.size);
+    let splats_per_tile = total_splats_per_tile(scenes, camera, options.size, settings.lod);
     // With a bound on the work of a tile there are no slices.
     let sliced = options.most_splats.is_none() && slicing.needs_slices(scenes, splats_per_tile);
     let fit = Fit::new(device, options, workgroup.is_some(), sliced);

@@ -2,7 +2,7 @@
 
 use super::targets::TILE;
 use crate::error::Result;
-use crate::geometry::Camera;
+use crate::geometry::{Camera, LevelTable};
 use crate::scene::instance::Placed;
 use crate::vk::{Buffer, Device};
 use std::f64::consts::PI;
@@ -78,30 +78,45 @@ impl Slicing {
     }
 }
 
-/// Average splats per covered tile, summed over the scenes.
-pub fn total_splats_per_tile(scenes: &[Placed<'_>], camera: &Camera, size: [u32; 2]) -> f64 {
-    scenes.iter().map(|placed| splats_per_tile(placed, camera, size)).sum()
+/// Average splats per covered tile, summed over the scenes, at a level of detail of `lod` px.
+pub fn total_splats_per_tile(scenes: &[Placed<'_>], camera: &Camera, size: [u32; 2], lod: f32) -> f64 {
+    scenes.iter().map(|placed| splats_per_tile(placed, camera, size, lod)).sum()
 }
 
 /// Average splats per tile inside the projected bounding sphere of a scene.
-fn splats_per_tile(placed: &Placed<'_>, camera: &Camera, size: [u32; 2]) -> f64 {
+fn splats_per_tile(placed: &Placed<'_>, camera: &Camera, size: [u32; 2], lod: f32) -> f64 {
     let tiles = size.map(|side| f64::from(side.div_ceil(TILE)));
-    let radius = radius_in_pixels(placed, camera, size) / f64::from(TILE);
+    // A lower bound: at the farthest point of the sphere.
+    let [nearest, farthest] = scales(placed, camera, size);
+    let radius = farthest * placed.bounds().radius / f64::from(TILE);
     let covered = (PI * radius * radius).clamp(1.0, tiles[0] * tiles[1]);
-    placed.scene.count() as f64 / covered
+    drawn_surfels(placed, nearest, lod) as f64 / covered
 }
 
-/// Projected radius of a scene's bounding sphere, px; infinite if the eye is inside.
-fn radius_in_pixels(placed: &Placed<'_>, camera: &Camera, size: [u32; 2]) -> f64 {
+/// Surfels of a scene that are of the drawn levels at most, where a world unit is at most `scale` px.
+fn drawn_surfels(placed: &Placed<'_>, scale: f64, lod: f32) -> u64 {
+    let scene = placed.scene;
+    let unit = placed.placement.map_or(1.0, |placement| placement.scale());
+    let level = |table: &LevelTable| {
+        let suffices = |level: &usize| {
+            table.cell_side(*level).is_some_and(|side| scale * unit * f64::from(side) <= lod.into())
+        };
+        (1..).take_while(suffices).last().map(|level| table.surfels(level, scene.count()))
+    };
+    scene.level_table().and_then(level).unwrap_or(scene.count())
+}
+
+/// Projected size of a world unit at the nearest and at the farthest point of a scene's bounding sphere, px; infinite if the eye is inside.
+fn scales(placed: &Placed<'_>, camera: &Camera, size: [u32; 2]) -> [f64; 2] {
     let bounds = placed.bounds();
     let clip = camera.world_to_clip();
     let [x, y, w] = [0, 1, 3].map(|row| clip.row(row));
-    let depth = w.dot(bounds.centre().extend(1.0)).abs() - w.truncate().length() * bounds.radius;
-    if depth <= 0.0 || depth.is_nan() {
-        return f64::INFINITY;
+    let nearest = w.dot(bounds.centre().extend(1.0)).abs() - w.truncate().length() * bounds.radius;
+    if nearest <= 0.0 || nearest.is_nan() {
+        return [f64::INFINITY; 2];
     }
     let [width, height] = size.map(f64::from);
-    let extent = (0.5 * width * x.truncate().length()).min(0.5 * height * y.truncate().length());
-    // Lower bound: the scale at the farthest point of the sphere.
-    extent * bounds.radius / (depth + 2.0 * w.truncate().length() * bounds.radius)
+    let [x, y] = [0.5 * width * x.truncate().length(), 0.5 * height * y.truncate().length()];
+    let farthest = nearest + 2.0 * w.truncate().length() * bounds.radius;
+    [x.max(y) / nearest, x.min(y) / farthest]
 }

@@ -146,9 +146,16 @@ impl Parts<'_> {
         }
     }
 
+    /// Number of points: of the surfels, those that stand for no others.
+    pub(crate) fn points(&self) -> usize {
+        let first = self.levels.and_then(|table| table.starts().first());
+        first.map_or(self.surfels.len(), |start| *start as usize)
+    }
+
     /// Bounds of the valid elements, world space; `None` if there are none.
     pub fn bounds(&self) -> Option<Bounds> {
-        let both = [self.surfels.bounds(), self.primitives.and_then(Primitives::bounds)];
+        let surfels = self.surfels.bounds_of_first(self.points());
+        let both = [surfels, self.primitives.and_then(Primitives::bounds)];
         both.into_iter().flatten().reduce(|a, b| a.with(&b))
     }
 }

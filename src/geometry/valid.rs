@@ -60,14 +60,19 @@ impl Surfels {
 
     /// Bounds of the bounding spheres of the valid discs in the file's frame, `origin` included; `None` if there are none.
     pub fn bounds(&self) -> Option<Bounds> {
+        self.bounds_of_first(self.len())
+    }
+
+    /// [`Surfels::bounds`] of the first `count`.
+    pub(crate) fn bounds_of_first(&self, count: usize) -> Option<Bounds> {
         let of = |positions: &[Vec3], radii: &[f32]| {
             let largest = radii.iter().copied().fold(0.0, f32::max);
             Some(Bounds::of(positions)?.grown(largest.into()).translated(self.origin))
         };
         if self.count_invalid() == 0 {
-            return of(&self.positions, &self.radii);
+            return of(&self.positions[..count], &self.radii[..count]);
         }
-        let valid = (0..self.len()).filter(|&i| self.is_valid(i));
+        let valid = (0..count).filter(|&i| self.is_valid(i));
         let (positions, radii): (Vec<_>, Vec<_>) = valid.map(|i| (self.positions[i], self.radii[i])).unzip();
         of(&positions, &radii)
     }

@@ -152,11 +152,7 @@ impl Scene {
             uploads.buffer(name, bytes).map(|buffer| Stream::side_by_side(buffer, size))
         };
         // Each level is sorted.
-        let points = parts
-            .levels
-            .and_then(|table| table.starts().first())
-            .map_or(surfels.len(), |start| *start as usize);
-        let order = Order::of(&surfels.positions[..points]);
+        let order = Order::of(&surfels.positions[..parts.points()]);
         // The bounds of all clusters are bound at once.
         let most = device.capabilities().max_storage_buffer_range;
         let bounded = order == Order::Coherent && count > 0 && clusters::bytes(count) <= most;

@@ -57,6 +57,12 @@ impl LevelTable {
         self.starts.partition_point(|start| *start as usize <= i)
     }
 
+    /// Number of surfels of a level from 1 on, of `all` with the points.
+    pub(crate) fn surfels(&self, level: usize, all: u64) -> u64 {
+        let end = self.starts.get(level).map_or(all, |start| (*start).into());
+        end - u64::from(self.starts[level - 1])
+    }
+
     /// Side of the cells of a level from 1 on; `None` beyond the coarsest.
     pub fn cell_side(&self, level: usize) -> Option<f32> {
         (1..=self.starts.len()).contains(&level).then(|| self.spacing * ((level - 1) as f32).exp2())
