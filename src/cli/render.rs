@@ -236,7 +236,7 @@ fn check_outputs(args: &Render, out: &Output) -> Result<()> {
     files::check_distinct("--json", json, std::iter::once(&args.output).chain(&args.inputs))
 }
 
-/// The scene, with its levels of detail in the place of its points if there are any.
+/// The scene, with its levels of detail if there are any.
 fn parts<'a>(model: &'a Model, levels: Option<&'a Levels>) -> Parts<'a> {
     match levels {
         Some(Levels { surfels, table }) => Parts { surfels, levels: Some(table), ..model.into() },

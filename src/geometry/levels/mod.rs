@@ -142,7 +142,7 @@ impl Cells {
         let high = indices.iter().map(position).reduce(Vec3::max)?;
         let extent =
             f64::from(low.abs().max(high.abs()).max_element()).max(f64::from((high - low).max_element()));
-        if indices.len() < LEAST_SHARE * FEW || !(extent > 0.0) {
+        if indices.len() < LEAST_SHARE * FEW || extent == 0.0 {
             return None;
         }
         // Cells are exact floats, and their codes have 21 bits per axis.
@@ -226,7 +226,7 @@ fn extended(mut all: Surfels, discs: &[Disc]) -> Surfels {
     let indices: Vec<u32> = (0..points as u32).chain(discs.iter().map(|disc| disc.point)).collect();
     all.texture = all.texture.take().map(|texture| texture.gather(&indices));
     all.materials = all.materials.take().map(|materials| materials.gather(&indices));
-    all.clips = Clips::join([(all.clips.take(), points), (None, discs.len())].into_iter());
+    all.clips = Clips::join([(all.clips.take(), points), (None, discs.len())]);
     all.positions.extend(discs.iter().map(|disc| disc.position));
     all.normals.extend(discs.iter().map(|disc| disc.normal));
     all.radii.extend(discs.iter().map(|disc| disc.radius));
