@@ -124,6 +124,7 @@ fn what(run: &Run) -> Vec<Cell> {
         ("lowpass", setting.lowpass.to_string()),
         ("pixel_filter", setting.pixel_filter.to_string()),
         ("widen", setting.widen.clone()),
+        ("lod", setting.lod.to_string()),
         ("epsilon", setting.epsilon.to_string()),
         ("cull", setting.cull.clone()),
         ("alpha", setting.alpha.clone()),

@@ -233,7 +233,7 @@ pub fn stale(provenance: &Provenance, code: &str, now: &str) -> Option<String> {
 }
 
 /// Place of the shading among [`settings`].
-const SHADING: usize = 8;
+const SHADING: usize = 9;
 
 /// Value of `--pixel-filter` of this variance.
 fn pixel_filter_option(variance: f32) -> String {
@@ -241,14 +241,26 @@ fn pixel_filter_option(variance: f32) -> String {
 }
 
 /// Each setting as its option of `surfel render`, without the axes, which the implementation's name contains.
-pub fn settings(setting: &RunSettings) -> [String; 9] {
-    let RunSettings { cutoff, lowpass, pixel_filter, widen, epsilon, cull, alpha, edges, shading, axes: _ } =
-        setting;
+pub fn settings(setting: &RunSettings) -> [String; 10] {
+    let RunSettings {
+        cutoff,
+        lowpass,
+        pixel_filter,
+        widen,
+        lod,
+        epsilon,
+        cull,
+        alpha,
+        edges,
+        shading,
+        axes: _,
+    } = setting;
     [
         format!("--lowpass {lowpass}"),
         format!("--pixel-filter {}", pixel_filter_option(*pixel_filter)),
         format!("--cutoff {cutoff}"),
         format!("--widen {widen}"),
+        format!("--lod {lod}"),
         format!("--epsilon {epsilon}"),
         format!("--cull {cull}"),
         format!("--alpha {alpha}"),
@@ -258,13 +270,13 @@ pub fn settings(setting: &RunSettings) -> [String; 9] {
 }
 
 /// The settings in which `runs` differ.
-pub fn differing_settings<'a>(runs: impl IntoIterator<Item = &'a Run>) -> [bool; 9] {
+pub fn differing_settings<'a>(runs: impl IntoIterator<Item = &'a Run>) -> [bool; 10] {
     let all: Vec<_> = runs.into_iter().map(|run| settings(&run.settings)).collect();
     std::array::from_fn(|i| all.iter().any(|one| one[i] != all[0][i]))
 }
 
 /// The settings selected by `which`.
-pub fn selected_settings(setting: &RunSettings, which: [bool; 7]) -> String {
+pub fn selected_settings(setting: &RunSettings, which: [bool; 10]) -> String {
     let chosen = settings(setting).into_iter().zip(which).filter(|(_, asked)| *asked);
     chosen.map(|(text, _)| text).collect::<Vec<_>>().join(" ")
 }
@@ -284,7 +296,7 @@ pub fn options_among(run: &Run, runs: &[&Run]) -> String {
 }
 
 /// The settings of `run` selected by `which`; pull–push has neither filter nor kernel nor ε.
-pub fn run_settings(run: &Run, which: [bool; 7]) -> String {
+pub fn run_settings(run: &Run, which: [bool; 10]) -> String {
     let splats = Method::named(&run.implementation.method).is_none_or(|method| method.pull_push.is_none());
     selected_settings(&run.settings, std::array::from_fn(|i| which[i] && (splats || i >= 4)))
 }

@@ -130,6 +130,7 @@ impl RunSettings {
             lowpass: settings.lowpass,
             pixel_filter: settings.pixel_filter,
             widen: settings.widen.name().into(),
+            lod: settings.lod,
             epsilon: settings.epsilon,
             cull: settings.cull.name().into(),
             alpha: settings.alpha.name().into(),

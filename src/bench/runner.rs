@@ -13,7 +13,7 @@ use crate::Scene;
 use crate::capture::{self, capture};
 use crate::error::{Error, Result};
 use crate::frame::times::Statistics;
-use crate::geometry::{Camera, Model, Surfels};
+use crate::geometry::{Camera, Levels, Model, Surfels};
 use crate::picture::Picture;
 use crate::settings::splatting::Normalization;
 use crate::settings::{Choice, RasterizerChoice, Settings, Shading};
@@ -60,7 +60,8 @@ pub struct Runner {
     scans: Vec<Rc<Subject>>,
     subject: Option<Rc<Subject>>,
     model: Option<(ModelKey, Rc<Model>)>,
-    scene: Option<(Rc<Model>, Rc<Scene>)>,
+    /// The uploaded model, and whether with levels of detail.
+    scene: Option<(Rc<Model>, bool, Rc<Scene>)>,
     truths: HashMap<String, Rc<Truth>>,
     images: Vec<Images>,
 }
@@ -299,7 +300,7 @@ impl Runner {
         match job.plan.engine {
             Engine::Splatting { rasterizer, precision } => {
                 let rasterizer = rasterizer.map_or(self.options.rasterizer, RasterizerChoice::Require);
-                let scene = self.scene(model)?;
+                let scene = self.scene(model, job.plan.settings.lod > 0.0)?;
                 Ok(Box::new(DeviceEngine::new(self.device()?, scene, size, rasterizer, precision)?))
             }
             Engine::Baseline(kind) => Ok(Box::new(CpuEngine::new(&model.surfels, size, kind)?)),
@@ -309,13 +310,14 @@ impl Runner {
         }
     }
 
-    /// The uploaded model; the last one is kept.
-    fn scene(&mut self, model: &Rc<Model>) -> Result<Rc<Scene>> {
+    /// The uploaded model, with levels of detail if asked for; the last one is kept.
+    fn scene(&mut self, model: &Rc<Model>, levels: bool) -> Result<Rc<Scene>> {
         let scene = match self.scene.take() {
-            Some((of, scene)) if Rc::ptr_eq(&of, model) => scene,
+            Some((of, with, scene)) if Rc::ptr_eq(&of, model) && with == levels => scene,
+            _ if levels => Rc::new(Scene::upload(self.device()?, &Levels::of(model.surfels.clone())?)?),
             _ => Rc::new(Scene::upload(self.device()?, &**model)?),
         };
-        self.scene = Some((model.clone(), scene.clone()));
+        self.scene = Some((model.clone(), levels, scene.clone()));
         Ok(scene)
     }
 

@@ -162,7 +162,7 @@ fn pass((name, ms): (&'static str, Statistics)) -> Value {
     json!({ "name": name, "ms": ms })
 }
 
-/// Counts of points, each of which counts once: read = dropped + culled + drawn.
+/// Counts of points, each of which counts once: read = dropped + culled + drawn. Surfels of levels of detail count as points do.
 fn tally(loaded: &LoadedModel, counts: SplatCounts) -> Value {
     let Dropped { position, transparent } = loaded.dropped;
     let SplatCounts { drawn, behind, eye_plane, back, outside, invalid, other_level } = counts;

@@ -26,7 +26,7 @@ fn check_counts(counts: &Value) {
         counts["dropped"],
         serde_json::json!({ "position": 1, "transparent": 0, "unused": 0, "outlier": 0 })
     );
-    let culled = serde_json::json!({ "behind": 1, "eye_plane": 1, "back": 1, "outside": 1, "invalid": 0 });
+    let culled = serde_json::json!({ "behind": 1, "eye_plane": 1, "back": 1, "outside": 1, "invalid": 0, "other_level": 0 });
     assert_eq!(counts["culled"], culled);
 }
 
@@ -100,12 +100,35 @@ fn points_are_counted_by_every_rasterizer() {
         let report: Value = serde_json::from_str(run.text()).unwrap();
         let counts = &report["counts"];
         // A point does not reach the eye plane; this disc is edge-on.
-        let culled =
-            serde_json::json!({ "behind": 1, "eye_plane": 0, "back": 2, "outside": 1, "invalid": 0 });
+        let culled = serde_json::json!({ "behind": 1, "eye_plane": 0, "back": 2, "outside": 1, "invalid": 0, "other_level": 0 });
         assert_eq!((&counts["culled"], &counts["drawn"]), (&culled, &1.into()), "{way}");
         let rasterizer = way.split(' ').nth(2).map_or(Value::Null, Value::from);
         assert_eq!(report["rasterizer"], rasterizer, "{way}");
     }
+}
+
+#[test]
+fn levels_of_detail_are_drawn_by_every_rasterizer() {
+    let Some(program) = Program::with_device("levels_of_detail_are_drawn_by_every_rasterizer") else {
+        return;
+    };
+    let counts =
+        ["--reference", "--validate --rasterizer draw", "--validate --rasterizer compute"].map(|way| {
+            let scene = "render scene:bumpy-sphere?points=20000 -o a.png --json - --size 64x64 --cull none";
+            let run = program.run(&format!("{scene} --lod 2 {way}"));
+            let report: Value = serde_json::from_str(run.text()).unwrap();
+            assert_eq!(
+                (&report["settings"]["lod"], &report["counts"]["read"]),
+                (&2.0.into(), &20_000.into())
+            );
+            report["counts"].clone()
+        });
+    let drawn = counts[0]["drawn"].as_u64().unwrap();
+    // The levels' surfels count, too.
+    assert!(drawn < 8_000 && drawn + sum(&counts[0]["culled"]) > 20_000, "{}", counts[0]);
+    assert_eq!((&counts[1], &counts[2]), (&counts[0], &counts[0]));
+    let run = program.run("render scene:sphere -o a.png --lod=-1");
+    assert!(run.error(2).contains("level of detail"), "{}", run.error(2));
 }
 
 #[test]

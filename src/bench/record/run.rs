@@ -125,6 +125,8 @@ pub enum Experiment {
     ScalingSize,
     /// Time against the number of discs over a point of the surface.
     ScalingOverlap,
+    /// Time and error against the level of detail.
+    ScalingLevels,
     /// Times relative to the CPU baseline.
     Baseline,
     /// Effects that the papers' figures show, both sides of each.
@@ -165,6 +167,9 @@ pub struct RunSettings {
     pub pixel_filter: f32,
     /// Which splats the low-pass filter widens: `all` or `small`.
     pub widen: String,
+    /// [`Settings::lod`](crate::Settings::lod), px.
+    #[serde(default)]
+    pub lod: f32,
     /// [`Settings::epsilon`](crate::Settings::epsilon), radii.
     pub epsilon: f32,
     /// Which surfels are culled: `none`, `back` or `auto`.

@@ -27,7 +27,7 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
             let largest = runs.iter().filter_map(|run| run.rmse()).fold(0.0, f64::max);
             let plot = Plot::of(name, title(&view), axes, lines(&runs)).above(SHOWN * largest);
             let plot = page.plot(plot)?;
-            let how = format::selected_settings(setting, [true, true, true, true, false, false, false]);
+            let how = format::selected_settings(setting, std::array::from_fn(|i| i < 4));
             plots.push(html! { div {
                 (plot)
                 p.caption { code { (format::with_options(implementation, &how)) } ". " (sentence(&runs)) }

@@ -19,7 +19,7 @@ struct ScalingAxis {
     of: fn(&Run) -> Option<f64>,
 }
 
-const FIGURES: [ScalingAxis; 3] = [
+const FIGURES: [ScalingAxis; 4] = [
     ScalingAxis {
         experiment: Experiment::ScalingPoints,
         name: "points",
@@ -41,7 +41,25 @@ const FIGURES: [ScalingAxis; 3] = [
         axis: "discs over a point of the surface",
         of: |run| run.overlap,
     },
+    ScalingAxis {
+        experiment: Experiment::ScalingLevels,
+        name: "levels",
+        title: "level of detail",
+        axis: "largest cell that is drawn as one surfel, px",
+        of: |run| Some(f64::from(run.settings.lod)).filter(|lod| *lod > 0.0),
+    },
 ];
+
+impl ScalingAxis {
+    /// The options that tell the lines apart.
+    fn options(&self, run: &Run, runs: &[&Run]) -> String {
+        match self.experiment {
+            // The level is along the axis.
+            Experiment::ScalingLevels => String::new(),
+            _ => format::options_among(run, runs),
+        }
+    }
+}
 
 /// A plot per experiment and scene, with the growth of time at its end.
 pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
@@ -76,7 +94,7 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
 fn lines(page: &Page<'_>, runs: &[&Run], over: &ScalingAxis) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
     for ((implementation, setting), runs) in
-        grouped(runs.iter().copied(), |run| (&run.implementation, format::options_among(run, runs)))
+        grouped(runs.iter().copied(), |run| (&run.implementation, over.options(run, runs)))
     {
         let mut points: Vec<_> = runs.iter().filter_map(|run| Some([(over.of)(run)?, run.ms()?])).collect();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));

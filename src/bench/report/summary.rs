@@ -107,7 +107,7 @@ fn standing_row(standing: &Standing<'_>) -> Markup {
 }
 
 /// Low-pass filter, cut-off, widening, ε, culling and α; the shading is the same for all runs of a scene.
-const NAMED: [bool; 7] = [true, true, true, true, true, true, false];
+const NAMED: [bool; 10] = [true, true, true, true, true, true, true, false, false, false];
 
 fn table<'c, 'a>(
     session: &Session,

@@ -1,10 +1,11 @@
-//! Time against points, pixels and overlap.
+//! Time against points, pixels and overlap, and time and error against the level of detail.
 
 use super::{Suite, baseline, methods, plan};
 use crate::bench::place::Place;
 use crate::bench::plan::{Measurements, Plan};
 use crate::bench::record::Experiment;
-use crate::settings::methods::{Method, pull_push};
+use crate::settings::Settings;
+use crate::settings::methods::{Method, confetti, perspective_ewa, pull_push};
 use crate::verify::baseline::Kind;
 use crate::verify::scenes::Viewpoint;
 
@@ -42,7 +43,21 @@ pub(super) fn plans() -> Vec<Plan> {
         let plans_of_it = plan(Experiment::ScalingOverlap, 300_000, SIZE, every);
         plans.extend(plans_of_it.map(|plan| Plan { radius_scale, ..plan }));
     }
+    plans.extend(levels());
     plans
+}
+
+/// Levels of detail of a scene with many more points than pixels; 0 draws all points.
+fn levels() -> impl Iterator<Item = Plan> {
+    let methods = [perspective_ewa::METHOD, confetti::METHOD, pull_push::METHOD];
+    let plan = plan(Suite::Scaling, Experiment::ScalingLevels, SCENE, 1_000_000, [256; 2]);
+    let plan = Plan { measurements: Measurements::BOTH, ..plan };
+    [0.0, 0.5, 1.0, 2.0, 4.0, 8.0].into_iter().flat_map(move |lod| {
+        methods.map(|method| {
+            let by = plan.clone().by(&method);
+            Plan { settings: Settings { lod, ..by.settings.clone() }, ..by }
+        })
+    })
 }
 
 /// A plane that fills the picture with a point in every pixel and discs that reach all neighbours: every sample is

@@ -20,6 +20,10 @@ pub const MOST_LEVELS: usize = 12;
 const LEAST_SHARE: usize = 3;
 /// Codes of cells have one more bit per axis; their first cell is a multiple of two to this power, so that it is one on every level.
 const CODE_BITS: i32 = 20;
+/// Cells whose numbers have so many bits have exact corners in float32, and so have their neighbours.
+const EXACT_BITS: i32 = 22;
+/// Exponent of the least side: its inverse and its square by the distance of the eye are floats.
+const LEAST_EXPONENT: i32 = -100;
 /// A level of so few surfels is the last one.
 const FEW: usize = 64;
 
@@ -140,13 +144,14 @@ impl Cells {
         let position = |i: &u32| surfels.positions[*i as usize];
         let low = indices.iter().map(position).reduce(Vec3::min)?;
         let high = indices.iter().map(position).reduce(Vec3::max)?;
-        let extent =
-            f64::from(low.abs().max(high.abs()).max_element()).max(f64::from((high - low).max_element()));
-        if indices.len() < LEAST_SHARE * FEW || extent == 0.0 {
+        let size = f64::from((high - low).max_element());
+        if indices.len() < LEAST_SHARE * FEW || size == 0.0 {
             return None;
         }
-        // Cells are exact floats, and their codes have 21 bits per axis.
-        let finest = (extent.log2().ceil() as i32 - (CODE_BITS - 1)).max(-100);
+        // Codes have a bit more than the cells of the extent, and corners of cells are exact floats.
+        let farthest = f64::from(low.abs().max(high.abs()).max_element());
+        let bits = |length: f64| length.log2().ceil() as i32;
+        let finest = (bits(size) - (CODE_BITS - 1)).max(bits(farthest) - EXACT_BITS).max(LEAST_EXPONENT);
         let side = (finest as f32).exp2();
         let first = cell_of(low, side).map(|c| c & !((1 << CODE_BITS) - 1));
         let mut points: Vec<_> =

@@ -128,3 +128,26 @@ fn few_points_have_no_levels_and_weights_are_refused() {
     let levels = Levels::of(broken).unwrap();
     assert_eq!(levels.surfels.count_invalid(), 2);
 }
+
+#[test]
+fn scenes_of_any_size_and_far_from_the_origin_have_levels() {
+    for (scale, offset) in [(1e-25, Vec3::ZERO), (1e12, Vec3::ZERO), (1.0, Vec3::new(1e5, -3e4, 2e5))] {
+        let mut points = bumpy(20_000);
+        points.positions.iter_mut().for_each(|p| *p = *p * scale + offset);
+        points.radii.iter_mut().for_each(|r| *r *= scale);
+        let levels = Levels::of(points).unwrap();
+        levels.surfels.check().unwrap();
+        assert_eq!(levels.surfels.count_invalid(), 0, "{scale}");
+        let starts = levels.table.starts();
+        assert!(starts.len() >= 3, "{scale}: {starts:?}");
+        for (number, start) in starts.iter().enumerate() {
+            let side = levels.table.cell_side(number + 1).unwrap();
+            let end = starts.get(number + 1).map_or(levels.surfels.len(), |end| *end as usize);
+            let mut cells: HashMap<IVec3, usize> = HashMap::new();
+            let positions = &levels.surfels.positions[*start as usize..end];
+            positions.iter().for_each(|p| *cells.entry(cell_of(*p, side)).or_default() += 1);
+            // Rounding takes no surfel out of its cell.
+            assert!(cells.values().all(|count| *count <= 2), "{scale}, level {}", number + 1);
+        }
+    }
+}
