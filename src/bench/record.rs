@@ -2,13 +2,15 @@
 //! [metrics](crate::verify::metrics) define them.
 
 mod ceilings;
+mod experiment;
 mod run;
 mod schema;
 
 pub use ceilings::{Ceilings, PassWork, Rate, Shares};
+pub use experiment::Experiment;
 pub use run::{
-    Against, Axes, Blended, Clock, Error, Experiment, Float64Error, Implementation, Memory, PIXELS, Pass,
-    Run, RunSettings, SPLATS, TRACED, Terms, Time, View, Viewpoint,
+    Against, Axes, Blended, Clock, Error, Float64Error, Implementation, Memory, PIXELS, Pass, Run,
+    RunSettings, SPLATS, TRACED, Terms, Time, View, Viewpoint,
 };
 pub use schema::schema;
 

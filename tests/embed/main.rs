@@ -13,6 +13,7 @@ mod host;
 mod hosts;
 mod inputs;
 mod instances;
+mod levels;
 mod live;
 mod memory;
 mod native;

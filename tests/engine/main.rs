@@ -18,6 +18,7 @@ mod edges;
 mod estimate;
 mod filter;
 mod footprint;
+mod frame_plans;
 mod frames;
 mod hard;
 mod hostile;

@@ -69,7 +69,7 @@ impl LevelTable {
 
     /// Side of the cells of a level from 1 on; `None` beyond the coarsest.
     pub fn cell_side(&self, level: usize) -> Option<f32> {
-        (1..=self.starts.len()).contains(&level).then(|| self.spacing * ((level - 1) as f32).exp2())
+        (1..=self.starts.len()).contains(&level).then(|| self.spacing * (1u32 << (level - 1)) as f32)
     }
 }
 
@@ -152,7 +152,8 @@ impl Cells {
         let farthest = f64::from(low.abs().max(high.abs()).max_element());
         let bits = |length: f64| length.log2().ceil() as i32;
         let finest = (bits(size) - (CODE_BITS - 1)).max(bits(farthest) - EXACT_BITS).max(LEAST_EXPONENT);
-        let side = (finest as f32).exp2();
+        // Exact on every system.
+        let side = f32::from_bits(((f32::MAX_EXP - 1 + finest) as u32) << (f32::MANTISSA_DIGITS - 1));
         let first = cell_of(low, side).map(|c| c & !((1 << CODE_BITS) - 1));
         let mut points: Vec<_> =
             indices.into_par_iter().map(|i| (code(cell_of(position(&i), side) - first), i)).collect();
