@@ -134,7 +134,8 @@ impl Scene {
         parts.check()?;
         let image = parts.texture();
         if image.is_none() && parts.has_texture() {
-            return Self::new_silently(device, uploads, (&parts.baked()).into());
+            let baked = parts.baked();
+            return Self::new_silently(device, uploads, Parts { levels: parts.levels, ..(&baked).into() });
         }
         room::check(device, &parts)?;
         let (bounds, invalid) = usable(&parts)?;

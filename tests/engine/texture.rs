@@ -8,8 +8,8 @@ use glam::{DVec2, DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
-use surfel::geometry::{Camera, Colours, MipMap, Model, Surfels, Texture};
-use surfel::settings::methods::{Method, pull_push};
+use surfel::geometry::{Camera, Colours, Levels, MipMap, Model, Surfels, Texture};
+use surfel::settings::methods::{Method, perspective_ewa, pull_push};
 use surfel::settings::{Settings, Shading};
 use surfel::verify::reference;
 use surfel::verify::scenes;
@@ -115,6 +115,24 @@ fn every_method_shows_the_texture() {
         let [own, gpu] = [own, gpu].map(|picture| rmse(&truth, &picture));
         println!("{}: RMSE {gpu:.4}, {own:.4} by the reference", method.name);
         assert!(gpu < most(&method) && (own - gpu).abs() < 1e-3, "{}: {gpu} {own}", method.name);
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn levels_of_detail_show_the_texture() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let truth = truth();
+    let options = RenderOptions { size: [SIDE; 2], ..Default::default() };
+    let levels = Levels::of(sphere(100_000).surfels).unwrap();
+    for method in [perspective_ewa::METHOD, pull_push::METHOD] {
+        let settings = Settings { background: None, lod: 6.0, ..settings(method) };
+        let own = reference::render(&levels, &camera(), [SIDE; 2], &settings, &()).unwrap();
+        assert!(own.counts.other_level > 90_000, "{:?}", own.counts);
+        let gpu = render(&device, &levels, &camera(), &settings, options);
+        let [own, gpu] = [own.to_picture(), gpu].map(|picture| rmse(&truth, &picture));
+        println!("{}: RMSE {gpu:.4}, {own:.4} by the reference", method.name);
+        assert!(gpu < 0.12 && (own - gpu).abs() < 1e-3, "{}: {gpu} {own}", method.name);
     }
     assert_silent(&device);
 }
