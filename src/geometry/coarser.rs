@@ -85,12 +85,12 @@ impl Surfels {
         (position.is_finite() && radius.is_finite()).then_some(merged)
     }
 
-    fn is_two_sided(&self, i: u32) -> bool {
+    pub(super) fn is_two_sided(&self, i: u32) -> bool {
         self.two_sided.as_ref().is_some_and(|two_sided| two_sided[i as usize])
     }
 
     /// The colour in linear light; 0 without colours.
-    fn light(&self, i: u32, light: &[f32; 256]) -> Vec3 {
+    pub(super) fn light(&self, i: u32, light: &[f32; 256]) -> Vec3 {
         match &self.colours {
             Some(Colours::Srgb8(codes)) => {
                 let code = codes[i as usize];

@@ -1,7 +1,7 @@
 //! Sums over the discs of several points, of which an aggregated surfel is made (pajarola2004 equations 1–4).
 
 use super::{Disc, cell_of};
-use crate::geometry::{Colours, Ellipse, Surfels};
+use crate::geometry::{Ellipse, Surfels};
 use glam::{DMat3, DVec3, IVec3, Vec3};
 use std::array;
 
@@ -46,9 +46,9 @@ impl Aggregate {
             area,
             position: area * p,
             normal: area * n,
-            colour: area * colour_of(surfels, at, light),
+            colour: area * surfels.light(i, light).as_dvec3(),
             second: area * (outer(p) + disc),
-            two_sided: surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[at]),
+            two_sided: surfels.is_two_sided(i),
             point: i,
             largest: surfels.radii[at],
         }
@@ -140,15 +140,4 @@ fn semi_axes(covariance: DMat3, normal: DVec3) -> (DVec3, [f64; 2]) {
     let axis = if radius > 0.0 { (axis[0] * s + axis[1] * t).normalize() } else { s };
     let mean = 0.5 * (xx + yy);
     (axis, [mean + radius, mean - radius].map(|variance| GROWTH * (variance.max(0.0) / DISC_VARIANCE).sqrt()))
-}
-
-/// Linear light; 0 without colours.
-fn colour_of(surfels: &Surfels, i: usize, light: &[f32; 256]) -> DVec3 {
-    match &surfels.colours {
-        Some(Colours::Srgb8(codes)) => {
-            DVec3::from_array(array::from_fn(|channel| f64::from(light[usize::from(codes[i][channel])])))
-        }
-        Some(Colours::Linear(linear)) => Vec3::from(linear[i]).as_dvec3(),
-        None => DVec3::ZERO,
-    }
 }
