@@ -52,7 +52,7 @@ mod tests {
 
     #[test]
     fn of_a_sphere_the_cap_towards_the_eye_is_visible() {
-        let name = "scene:sphere?points=20000";
+        let name = "scene:sphere?points=5000";
         let surfels = scenes::open(name).unwrap();
         let subject = Subject::scene("scene:sphere").unwrap();
         let eye = DVec3::new(0.0, 0.0, 4.0);
@@ -63,7 +63,7 @@ mod tests {
         assert!(visible.len().abs_diff(in_front) < surfels.len() / 500, "{} {in_front}", visible.len());
         assert!(visible.positions.iter().all(|p| p.z > 0.2));
         // Noise does not change which surfels are visible.
-        let noisy = scenes::open("scene:sphere?points=20000&noise=0.2").unwrap();
+        let noisy = scenes::open("scene:sphere?points=5000&noise=0.2").unwrap();
         let still_seen = visible_surfels(&noisy, subject.surface().unwrap(), &camera);
         // Noise moves some beyond the horizon into view.
         assert!(still_seen.len().abs_diff(in_front) < surfels.len() / 20, "{} {in_front}", still_seen.len());

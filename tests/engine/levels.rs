@@ -199,8 +199,8 @@ fn quality(
 fn a_level_of_two_pixels_loses_half_a_decibel_at_most() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let subject = Subject::scene("scene:bumpy-sphere").unwrap();
-    let points = if_whole(2_000_000, 400_000);
-    let size = [if_whole(256, 128); 2];
+    let points = if_whole(2_000_000, 200_000);
+    let size = [if_whole(256, 96); 2];
     let levels = Levels::of(subject.model(points).unwrap().surfels).unwrap();
     let camera =
         Camera::look_at(DVec3::new(1.7, 1.37, 2.73), DVec3::ZERO, DVec3::Y, 45f64.to_radians(), 1.0, 0.1)

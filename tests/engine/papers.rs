@@ -85,9 +85,11 @@ effects! {
     box_weights_show_facets: "box-weights";
     light_at_every_pixel_keeps_highlights_sharp: "deferred-shading";
     a_ribbon_is_narrower_where_it_turns: "ribbon-width";
+    #[ignore = "takes long: tools/test --all"]
     lines_are_thicker_than_triangles: "thin-lines";
     #[ignore = "takes long: tools/test --all"]
     sprites_leave_holes_under_strong_perspective: "perspective-methods";
+    #[ignore = "takes long: tools/test --all"]
     means_of_all_around_let_hidden_surfaces_through: "layers";
     #[ignore = "takes long: tools/test --all"]
     sprites_of_whole_sizes_have_more_error: "whole-sizes";

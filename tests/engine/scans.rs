@@ -1,7 +1,7 @@
 //! Real scans, from file to picture, against their meshes.
 
 use crate::support::settings::splats_alone;
-use crate::support::{gpu, mesh};
+use crate::support::{gpu, if_whole, mesh};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 use surfel::estimate::Estimate;
@@ -41,7 +41,8 @@ fn covered(picture: &Picture) -> Vec<bool> {
 #[test]
 fn scans_have_their_meshes_outlines_and_no_holes() {
     let Some(device) = gpu::device(DeviceLimits::default()) else { return };
-    for name in ["stanford/bunny/bun_zipper.ply", "classic/igea.ply", "stanford/dragon/dragon_vrip.ply"] {
+    let names = ["stanford/bunny/bun_zipper.ply", "classic/igea.ply", "stanford/dragon/dragon_vrip.ply"];
+    for name in &names[..if_whole(names.len(), 1)] {
         let Some(path) = mesh::data(name) else { return };
         let mesh = mesh::read(&path);
         let bare = Cloud { positions: mesh.positions.clone(), origin: mesh.origin, ..Default::default() };
