@@ -85,8 +85,9 @@ pub fn run(args: &Render) -> Result<()> {
         progress::say(&note);
     }
     let contents = summary::parts(&loaded.model);
-    let levels =
-        (settings.lod > 0.0).then(|| Levels::of(std::mem::take(&mut loaded.model.surfels))).transpose()?;
+    let levels = (settings.lod > 0.0 || settings.max_points.is_some())
+        .then(|| Levels::of(std::mem::take(&mut loaded.model.surfels)))
+        .transpose()?;
     let scene = parts(&loaded.model, levels.as_ref());
     let (layers, size, frames, progress) = (args.outputs(), args.size, args.frames, &*bars);
     let split = args.times == Some(PassTimes::Split);

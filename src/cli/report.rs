@@ -17,6 +17,8 @@ use surfel::{Error, Precision, Rasterizer, RasterizerReason, Result, Settings, S
 pub struct Gpu {
     /// The device.
     pub description: DeviceDescription,
+    /// Level of detail of the frame, px.
+    pub lod: f32,
     /// Float width of the sums.
     pub precision: Precision,
     /// The rasterizer.
@@ -78,6 +80,7 @@ impl Report {
     fn put_gpu(&mut self, gpu: Option<&Gpu>) {
         let mut put = |key: &str, value: Option<Value>| self.0.insert(key.into(), json!(value));
         put("device", gpu.map(|gpu| device(&gpu.description)));
+        put("lod", gpu.map(|gpu| json!(gpu.lod)));
         put("precision", gpu.map(|gpu| json!(gpu.precision.name())));
         put("rasterizer", gpu.map(|gpu| json!(gpu.rasterizer.map(Choice::name))));
         let reason = gpu.map(|gpu| gpu.rasterizer_reason.map(<&str>::from));
@@ -118,6 +121,7 @@ fn settings(settings: &Settings) -> Value {
         pixel_filter,
         widen,
         lod,
+        max_points,
         epsilon,
         cull,
         alpha,
@@ -129,14 +133,14 @@ fn settings(settings: &Settings) -> Value {
     let Splatting { footprint, kernel, filter, visibility, normalization, shade } = splatting;
     if let Some(pull_push) = pull_push {
         return json!({
-            "rules": pull_push.rules.name(), "lod": lod, "cull": cull.name(), "shading": shading.name(), "background": background,
+            "rules": pull_push.rules.name(), "lod": lod, "max_points": max_points, "cull": cull.name(), "shading": shading.name(), "background": background,
             "lighting": light(lighting),
         });
     }
     json!({
         "footprint": footprint.name(), "kernel": kernel.to_string(), "filter": filter.name(),
         "visibility": visibility.name(), "normalization": normalization.name(), "shade": shade.name(),
-        "cutoff": cutoff, "lowpass": lowpass, "pixel_filter": pixel_filter, "widen": widen.name(), "lod": lod, "epsilon": epsilon, "cull": cull.name(),
+        "cutoff": cutoff, "lowpass": lowpass, "pixel_filter": pixel_filter, "widen": widen.name(), "lod": lod, "max_points": max_points, "epsilon": epsilon, "cull": cull.name(),
         "alpha": alpha.name(), "edges": edges.name(), "shading": shading.name(),
         "background": background, "lighting": light(lighting),
     })

@@ -71,7 +71,7 @@ pub fn render(
         split.as_mut().map_or(Ok(()), |split| split.frame(task, &scene))?;
     }
     task.progress.at(FRAMES, task.frames.into(), task.frames.into());
-    let mut gpu = gpu(&device, &renderer, &scene);
+    let mut gpu = gpu(&device, &renderer, (&scene, report.lod));
     if backend.half {
         gpu.half_error = half_error(&device, task, &scene, options, &picture)?;
     }
@@ -169,9 +169,10 @@ fn half_error(
 }
 
 /// The device and its resources.
-fn gpu(device: &Arc<Device>, renderer: &Renderer, scene: &Scene) -> Gpu {
+fn gpu(device: &Arc<Device>, renderer: &Renderer, (scene, lod): (&Scene, f32)) -> Gpu {
     Gpu {
         description: device.description().clone(),
+        lod,
         precision: renderer.precision(),
         rasterizer: renderer.rasterizer(),
         rasterizer_reason: renderer.rasterizer_reason(),

@@ -230,7 +230,7 @@ impl Renderer {
         self.deferred.extend(self.frame.take_deferred());
         let (uniforms, pending) = pending?;
         let scenes: Vec<_> = self.frame.scenes().collect();
-        self.reports.begin(&self.device, &scenes)?;
+        self.reports.begin(&self.device, &scenes, self.frame.lod())?;
         self.reports.mark(incomplete);
         self.deferred.advance();
         let (timestamps, tail) = self.reports.present();

@@ -53,6 +53,8 @@ struct PendingReport {
     times: bool,
     /// Number of surfels, and size of the counts, bytes.
     counts: Option<(u64, u64)>,
+    /// Level of detail, px.
+    lod: f32,
 }
 
 impl Reports {
@@ -82,8 +84,8 @@ impl Reports {
         }
     }
 
-    /// Begins a frame of these scenes. The frame of the same slot before is over.
-    pub(super) fn begin(&mut self, device: &Arc<Device>, scenes: &[&SceneResources]) -> Result<()> {
+    /// Begins a frame of these scenes at a level of detail, px. The frame of the same slot before is over.
+    pub(super) fn begin(&mut self, device: &Arc<Device>, scenes: &[&SceneResources], lod: f32) -> Result<()> {
         let (next, measured) = ((self.present + 1) % self.slots.len(), self.measured);
         let slot = &mut self.slots[next];
         self.last = slot.read()?;
@@ -99,7 +101,7 @@ impl Reports {
             slot.counts = Some(Buffer::readback(device, "frame counts", room)?);
         }
         self.frames = self.frames.wrapping_add(1);
-        let pending = PendingReport { number: self.frames, times: measured.times, counts };
+        let pending = PendingReport { number: self.frames, times: measured.times, counts, lod };
         slot.pending = (measured != Measured::default()).then_some(pending);
         if slot.pending.is_some() && slot.done.is_none() {
             let mut done = Buffer::readback(device, "frame done", size_of::<u32>() as u64)?;
@@ -164,7 +166,7 @@ fn copy_counts(scenes: &[&SceneResources], rec: &mut Recorder<'_>, to: &Buffer) 
 impl Slot {
     /// Reads the report of the slot's frame, which is over; `None` if it was read before.
     fn read(&mut self) -> Result<Option<FrameReport>> {
-        let Some(PendingReport { number, times, counts }) = self.pending.take() else { return Ok(None) };
+        let Some(PendingReport { number, times, counts, lod }) = self.pending.take() else { return Ok(None) };
         if self.done.as_ref().is_none_or(|done| done.bytes() != number.to_ne_bytes()) {
             return Ok(None);
         }
@@ -177,6 +179,7 @@ impl Slot {
             pass_times,
             counts: counts.map(|(surfels, counts)| SplatCounts::new(surfels, counts)),
             culled_in_clusters: counts.map_or(0, |(_, counts)| counts.in_clusters),
+            lod,
             incomplete: false,
         }))
     }

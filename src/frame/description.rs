@@ -22,6 +22,8 @@ pub struct Description {
     pub scenes: Vec<SceneVariant>,
     /// Average splats per covered tile.
     pub splats_per_tile: f64,
+    /// Level of detail, px.
+    pub lod: f32,
 }
 
 /// Describes a frame; rejects unsupported frames.
@@ -39,9 +41,11 @@ pub fn describe(
         settings.check_primitives(scene.primitives.is_some())?;
     }
     settings.check_outputs(options.outputs)?;
+    let lod = level_of_detail(scenes, camera, settings, options.size);
+    let settings = &Settings { lod, ..settings.clone() };
     let uniforms = Uniforms::new(camera, settings, options.size, scenes)?;
     let workgroup = workgroup_of(device, extent_of_frame(device, scenes));
-    let splats_per_tile = total_splats_per_tile(scenes, camera, options.size, settings.lod);
+    let splats_per_tile = total_splats_per_tile(scenes, camera, options.size, lod);
     // With a bound on the work of a tile there are no slices.
     let sliced = options.most_splats.is_none() && slicing.needs_slices(scenes, splats_per_tile);
     let fit = Fit::new(device, options, workgroup.is_some(), sliced);
@@ -58,7 +62,14 @@ pub fn describe(
     check_lookups(&variant, scenes)?;
     let instanced = !uniforms.instances.is_empty();
     let scenes = streams.into_iter().map(|streams| SceneVariant::new(variant, streams, instanced)).collect();
-    Ok(Description { uniforms, variant, reason, scenes, splats_per_tile })
+    Ok(Description { uniforms, variant, reason, scenes, splats_per_tile, lod })
+}
+
+/// The level of detail of a frame, px: that of the settings, or the least one that keeps to the most points.
+fn level_of_detail(scenes: &[Placed<'_>], camera: &Camera, settings: &Settings, size: [u32; 2]) -> f32 {
+    let Some(most) = settings.max_points else { return settings.lod };
+    let drawn = scenes.iter().map(|placed| placed.most_drawn(camera, size)).reduce(|all, own| all.with(&own));
+    drawn.map_or(settings.lod, |drawn| drawn.least_lod(most).max(settings.lod))
 }
 
 /// Rejects several scenes if one has a texture or materials: pixels look them up in one table.

@@ -52,6 +52,8 @@ pub struct FrameReport {
     pub counts: Option<SplatCounts>,
     /// Culled surfels that were not even read, if they were counted: the compute path culls clusters of 64 consecutive surfels by their bounds.
     pub culled_in_clusters: u32,
+    /// Level of detail, px: [`Settings::lod`], or more to keep to [`Settings::max_points`].
+    pub lod: f32,
     /// Whether a tile lacks splats, see [`RenderOptions::most_splats`]; in a host, also where a later frame did that is over.
     pub incomplete: bool,
 }
@@ -201,6 +203,7 @@ impl Renderer {
             pass_times: self.commands.pass_times()?,
             counts: counted.then(|| SplatCounts::new(surfels, counts)),
             culled_in_clusters: if counted { counts.in_clusters } else { 0 },
+            lod: self.frame.lod(),
             incomplete: self.frame.learn(),
         })
     }

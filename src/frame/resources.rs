@@ -30,6 +30,8 @@ pub struct FrameResources {
     current: Option<VariantResources>,
     /// Reason for its rasterizer.
     reason: Option<RasterizerReason>,
+    /// Level of detail of the last frame, px.
+    lod: f32,
     /// Resources of the previous variant: alternating between two, as progressive rendering does, creates nothing.
     previous: Option<VariantResources>,
     scenes: SceneCache,
@@ -80,6 +82,7 @@ impl FrameResources {
         Ok(Self {
             current: None,
             reason: None,
+            lod: 0.0,
             previous: None,
             scenes: SceneCache::default(),
             placements: Vec::new(),
@@ -114,6 +117,11 @@ impl FrameResources {
     /// Reason for the rasterizer of the last frame.
     pub fn rasterizer_reason(&self) -> Option<RasterizerReason> {
         self.reason
+    }
+
+    /// Level of detail of the last frame, px.
+    pub fn lod(&self) -> f32 {
+        self.lod
     }
 
     /// Resources of the last frame's scenes, each once.
@@ -215,6 +223,7 @@ impl FrameResources {
         self.make_scenes(scenes, frame)?;
         self.make_current(scenes, frame.variant, size)?;
         self.reason = Some(frame.reason);
+        self.lod = frame.lod;
         self.make_passes(&frame.scenes, bindings)
     }
 

@@ -33,7 +33,7 @@ pub use cloud::{Cloud, View};
 pub use colour_map::{ColourMap, ColourScale, ValueRange};
 pub use curvature::{Curvature, tangents};
 pub use extent::{Extent, horizontal_axes};
-pub use levels::{LevelTable, Levels, MOST_LEVELS};
+pub use levels::{LevelTable, Levels, MOST_LEVELS, MostDrawn};
 pub use materials::{Material, Materials};
 pub use pose::{Pose, Span};
 pub use primitives::{Model, Parts, Primitives};

@@ -2,7 +2,7 @@
 
 pub(crate) use super::similarity::Similarity;
 use crate::error::{Cause, Error, Result};
-use crate::geometry::Bounds;
+use crate::geometry::{Bounds, Camera, MostDrawn};
 use crate::scene::Scene;
 use crate::vk::Device;
 use glam::DMat4;
@@ -132,6 +132,12 @@ impl<'a> Placed<'a> {
     pub(crate) fn bounds(&self) -> Bounds {
         let own = self.scene.bounds();
         self.placement.map_or(own, |placement| placement.bounds(&own))
+    }
+
+    /// Upper bounds of the number of surfels that are drawn.
+    pub(crate) fn most_drawn(&self, camera: &Camera, size: [u32; 2]) -> MostDrawn {
+        let camera = self.placement.map_or(*camera, |placement| placement.seen_by(camera));
+        self.scene.most_drawn(&camera, size)
     }
 
     /// Upper bound of the radii in world space, if known.

@@ -18,7 +18,9 @@ mod update;
 mod weights;
 
 use crate::error::{Error, Result};
-use crate::geometry::{Bounds, Colours, Curvature, Ellipse, LevelTable, Parts, Primitives, Surfels, Texture};
+use crate::geometry::{
+    Bounds, Camera, Colours, Curvature, Ellipse, LevelTable, MostDrawn, Parts, Primitives, Surfels, Texture,
+};
 use crate::vk::shaders::{Resource, resource};
 use crate::vk::{Binding, Buffer, Device, Uploads};
 use bytemuck::{Pod, Zeroable};
@@ -248,6 +250,20 @@ impl Scene {
             .filter(|buffer| !buffer.is_external());
         let primitives = self.primitives.as_ref().map_or(0, PrimitiveStreams::bytes);
         buffers.map(Buffer::size).sum::<u64>() + primitives
+    }
+
+    /// Upper bounds of the number of surfels that are drawn, seen by `camera` in a picture of `size` px.
+    pub fn most_drawn(&self, camera: &Camera, size: [u32; 2]) -> MostDrawn {
+        let count = self.count();
+        self.levels
+            .as_ref()
+            .map_or(MostDrawn::all(count), |table| table.most_drawn(count, self.origin, camera, size))
+    }
+
+    /// Number of points: of surfels without those that stand for others from afar.
+    pub fn point_count(&self) -> u64 {
+        let levels = self.levels.as_ref().and_then(|table| table.starts().first());
+        levels.map_or(self.count(), |first| (*first).into())
     }
 
     /// Which of the surfels stand for others from afar, if any do.

@@ -34,6 +34,9 @@ pub struct Settings {
     /// Level of detail, px: cells of at most this side are drawn as one surfel, in scenes with levels ([`crate::geometry::Levels`]); 0 draws all
     /// points.
     pub lod: f32,
+    /// Most surfels that are drawn; `None` for any number. In scenes with levels the level of detail is at least the least one at which no more
+    /// are drawn ([`crate::geometry::MostDrawn`]); without levels all are drawn.
+    pub max_points: Option<u64>,
     /// Depth tolerance ε in surfel radii: splats at most this far behind the nearest one, along the viewing ray, are blended.
     pub epsilon: f32,
     /// Back-face culling.
@@ -61,6 +64,7 @@ impl Default for Settings {
             pixel_filter: 0.75,
             widen: Widen::Small,
             lod: 0.0,
+            max_points: None,
             epsilon: 1.0,
             cull: Cull::Auto,
             alpha: Alpha::Coverage,
@@ -207,6 +211,9 @@ impl Settings {
                 self.lod,
                 Self::MOST_LOD
             )));
+        }
+        if self.max_points == Some(0) {
+            return Err(Error::Usage("at most 0 points may be drawn: give a number above 0".into()));
         }
         self.lighting.check()?;
         if self.background.is_some_and(|colour| !colour.iter().all(|channel| channel.is_finite())) {

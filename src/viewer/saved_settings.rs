@@ -120,6 +120,7 @@ impl SavedSettings {
             lowpass: self.lowpass,
             pixel_filter: self.pixel_filter,
             lod: 0.0,
+            max_points: None,
             widen: Widen::named(&self.widen)?,
             epsilon: self.epsilon,
             cull: Cull::named(&self.cull)?,

@@ -29,6 +29,7 @@ mod materials;
 mod mesh_outlines;
 mod papers;
 mod ply_edge;
+mod point_budget;
 mod pull_push;
 mod pull_push_levels;
 mod pull_push_lines;

@@ -161,15 +161,6 @@ pub struct Render {
     /// The render settings
     #[command(flatten, next_help_heading = "Picture")]
     pub render_settings: RenderSettings,
-    /// Level of detail, px: surfels that stand for all points of a cell are drawn where its side is at most this; 0 draws all points
-    #[arg(
-        long,
-        value_name = "PX",
-        default_value_t = 0.0,
-        help_heading = "Picture",
-        allow_hyphen_values = true
-    )]
-    pub lod: f32,
     /// The device or the reference that renders
     #[command(flatten, next_help_heading = "Device")]
     pub backend: Backend,
@@ -267,6 +258,12 @@ pub struct RenderSettings {
     /// Which surfels are culled by their orientation [default: the method's]
     #[arg(long, value_parser = choice::<Cull>())]
     pub cull: Option<Cull>,
+    /// Level of detail, px: surfels that stand for all points of a cell are drawn where its side is at most this; 0 draws all points
+    #[arg(long, value_name = "PX", default_value_t = 0.0, allow_hyphen_values = true)]
+    pub lod: f32,
+    /// Most surfels that are drawn: the level of detail is the least one that keeps to it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub max_points: Option<u64>,
 }
 
 /// Changes of a method; see `surfel methods`.
@@ -312,7 +309,7 @@ impl Axes {
 impl Render {
     /// The settings of a method with the changes of the options.
     pub fn settings(&self, method: &Method) -> Settings {
-        Settings { lod: self.lod, ..self.render_settings.settings(&self.axes, method) }
+        self.render_settings.settings(&self.axes, method)
     }
 }
 
@@ -327,7 +324,8 @@ impl RenderSettings {
             lowpass: self.lowpass.unwrap_or(preset.lowpass),
             pixel_filter: self.pixel_filter.unwrap_or(preset.pixel_filter),
             widen: self.widen.unwrap_or(preset.widen),
-            lod: preset.lod,
+            lod: self.lod,
+            max_points: self.max_points,
             epsilon: self.epsilon,
             cull: self.cull.unwrap_or(preset.cull),
             alpha: self.alpha.unwrap_or(preset.alpha),

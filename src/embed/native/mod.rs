@@ -234,7 +234,7 @@ impl Renderer {
         self.deferred.extend(self.frame.take_deferred());
         let (uniforms, push, area) = made?;
         let scenes: Vec<_> = self.frame.scenes().collect();
-        self.reports.begin(&self.device, &scenes)?;
+        self.reports.begin(&self.device, &scenes, self.frame.lod())?;
         self.deferred.advance();
         let (timestamps, tail) = self.reports.present();
         // SAFETY: by the caller; there is a report for each frame in flight.

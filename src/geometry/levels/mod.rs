@@ -5,12 +5,16 @@
 //! cell are drawn. Compare pajarola2004 §3, whose octree splits at the mean instead.
 
 mod aggregate;
+mod boxes;
+mod most_drawn;
 
 use super::{Clips, Colours, Ellipse, Surfels, morton};
 use crate::error::{Error, Result};
 use crate::geometry::srgb;
 use aggregate::Aggregate;
+use boxes::{LevelBox, LevelBoxes};
 use glam::{IVec3, Vec3};
+pub use most_drawn::MostDrawn;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -43,6 +47,7 @@ pub struct LevelTable {
     starts: Vec<u32>,
     /// Side of the finest level's cells, in the positions' unit; a power of two.
     spacing: f32,
+    boxes: LevelBoxes,
 }
 
 impl LevelTable {
@@ -105,7 +110,10 @@ impl Levels {
             }
             aggregates = merged;
         }
-        Ok(Self { surfels: extended(surfels, &coarser), table: LevelTable { starts, spacing } })
+        let surfels = extended(surfels, &coarser);
+        let mut table = LevelTable { starts, spacing, boxes: LevelBoxes::default() };
+        table.boxes = LevelBoxes::of(&surfels, &table);
+        Ok(Self { surfels, table })
     }
 
     /// The points alone.

@@ -1,5 +1,7 @@
 use super::*;
-use crate::geometry::{Bounds, Weights};
+use crate::geometry::{Bounds, Camera, Weights};
+use crate::settings::Settings;
+use crate::verify::reference::levels::LevelOfDetail;
 use crate::verify::scenes;
 use glam::DVec3;
 use std::collections::HashMap;
@@ -149,5 +151,49 @@ fn scenes_of_any_size_and_far_from_the_origin_have_levels() {
             // Rounding takes no surfel out of its cell.
             assert!(cells.values().all(|count| *count <= 2), "{scale}, level {}", number + 1);
         }
+    }
+}
+
+#[test]
+fn no_more_are_drawn_than_the_bound_says() {
+    let levels = Levels::of(bumpy(100_000)).unwrap();
+    let size = [640, 480];
+    let looking =
+        |eye| Camera::look_at(eye, DVec3::new(0.2, 0.1, 0.0), DVec3::Y, 0.8, 4.0 / 3.0, 1e-3).unwrap();
+    let side = [DVec3::new(2.0, 1.6, 3.2), DVec3::ZERO, DVec3::Y];
+    let cameras = [
+        looking(side[0]),
+        looking(DVec3::new(0.9, 0.55, 0.8)),
+        looking(DVec3::new(0.2, 0.1, 0.3)),
+        looking(20.0 * side[0]),
+        Camera::orthographic(side, 2.6, 4.0 / 3.0, [0.1, 9.0]).unwrap(),
+    ];
+    for (view, camera) in cameras.iter().enumerate() {
+        let bound = levels.table.most_drawn(levels.surfels.len() as u64, DVec3::ZERO, camera, size);
+        assert_eq!(MostDrawn::lods().next(), Some(0.0));
+        let mut before = u64::MAX;
+        for lod in MostDrawn::lods().step_by(3).chain([0.3, 5.1]) {
+            let settings = Settings { lod, ..Settings::default() };
+            let detail = LevelOfDetail::new(camera, size, &settings).unwrap();
+            let clip = camera.world_to_clip();
+            let is_seen = |i: &usize| {
+                let at = clip * levels.surfels.positions[*i].as_dvec3().extend(1.0);
+                at.w > 0.0 && at.x.abs() < at.w && at.y.abs() < at.w
+            };
+            let is_drawn = |i: &usize| detail.decision(&levels.surfels, &levels.table, *i).0;
+            let all = (0..levels.surfels.len()).filter(is_drawn);
+            let drawn = all.filter(is_seen).count() as u64;
+            let most = bound.at(lod);
+            assert!(drawn <= most, "view {view}, {lod} px: {drawn} of at most {most}");
+            // Boxes at the border count as a whole.
+            assert!(most <= 3 * drawn + 2_000, "view {view}, {lod} px: {drawn} of at most {most}");
+            if lod != 0.3 && lod != 5.1 {
+                assert!(most <= before, "view {view}, {lod} px: {most} after {before}");
+                assert!(bound.least_lod(most) <= lod);
+                before = most;
+            }
+        }
+        assert_eq!(bound.clone().with(&MostDrawn::all(7)).at(2.0), bound.at(2.0) + 7);
+        assert_eq!(bound.least_lod(0), MostDrawn::lods().last().unwrap());
     }
 }

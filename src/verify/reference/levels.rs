@@ -64,7 +64,12 @@ pub fn drawn(
     size: [u32; 2],
     settings: &Settings,
 ) -> Result<(Surfels, usize)> {
-    let detail = LevelOfDetail::new(camera, size, settings)?;
+    let most = settings.max_points.map_or(0.0, |most| {
+        let drawn = table.most_drawn(surfels.len() as u64, surfels.origin, camera, size);
+        drawn.least_lod(most)
+    });
+    let settings = Settings { lod: settings.lod.max(most), ..settings.clone() };
+    let detail = LevelOfDetail::new(camera, size, &settings)?;
     let mut drawn = surfels.clone();
     let others: Vec<usize> = (0..surfels.len())
         .filter(|&i| surfels.is_valid(i) && !detail.decision(surfels, table, i).0)
