@@ -21,8 +21,11 @@ use surfel::{Error, Progress, Result};
 pub fn run(args: View) -> Result<()> {
     let start = Instant::now();
     args.settings(&args.method.unwrap_or(Method::ALL[0])).check()?;
-    if !(args.budget > 0.0 && args.budget.is_finite()) {
-        return Err(Error::Usage(format!("--budget is {} ms: give a number above 0", args.budget)));
+    if !(args.frame_budget > 0.0 && args.frame_budget.is_finite()) {
+        return Err(Error::Usage(format!(
+            "--frame-budget is {} ms: give a number above 0",
+            args.frame_budget
+        )));
     }
     let file = camera::read(&args.camera)?;
     let up = camera::up(&args.camera, file);
@@ -40,7 +43,7 @@ pub fn run(args: View) -> Result<()> {
         rasterizer: args.rasterizer,
         faster: rasterizers::read(),
         up,
-        budget: args.budget,
+        budget: args.frame_budget,
         fov_y_deg: args.camera.fov.unwrap_or(camera::FOV),
         initial_camera: Box::new(initial_camera),
         watch: args.watch,

@@ -4,7 +4,6 @@ mod bounds;
 mod camera;
 mod clips;
 mod cloud;
-mod coarser;
 mod colour_map;
 mod curvature;
 mod extent;

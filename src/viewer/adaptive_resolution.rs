@@ -157,20 +157,22 @@ impl AdaptiveResolution {
         if self.frames_since_finer == STABLE_FRAMES {
             self.patience = (self.patience / 2).max(PATIENCE);
         }
-        if self.chosen.level >= workload.surfels.len().max(1) || self.expected(workload, self.chosen) > LIMIT
-        {
+        if self.expected(workload, self.chosen) > LIMIT {
             if self.frames_since_finer < STABLE_FRAMES {
                 // The finer quality did not last: the next one waits longer.
                 self.patience = (2 * self.patience).min(MAX_PATIENCE);
                 self.frames_since_finer = STABLE_FRAMES;
+                self.last_good = None;
+            } else {
+                self.last_good.get_or_insert(self.chosen);
             }
-            self.last_good.get_or_insert(self.chosen);
             (self.chosen, self.fast_frames) = (self.coarser(workload), 0);
             return;
         }
         let back = self.last_good.filter(|good| self.expected(workload, *good) <= TARGET);
-        let next =
-            back.or_else(|| self.finest(workload, |quality| quality.is_one_step_finer_at_most(self.chosen)));
+        let next = back.or_else(|| {
+            self.finest(workload, |quality| workload.is_one_step_finer_at_most(*quality, self.chosen))
+        });
         let finer = next.filter(|next| workload.blur(*next) < MAX_BLUR_RATIO * workload.blur(self.chosen));
         let finer = finer.filter(|_| self.last_ms <= HEADROOM * self.budget);
         self.fast_frames = if finer.is_some() { self.fast_frames + 1 } else { 0 };
@@ -182,7 +184,7 @@ impl AdaptiveResolution {
     /// The finest quality within the budget that has neither more pixels nor more surfels; the fastest of all if there is none.
     fn coarser(&self, workload: &Workload) -> Quality {
         let no_more =
-            |quality: &Quality| quality.scale <= self.chosen.scale && quality.level >= self.chosen.level;
+            |quality: &Quality| quality.scale <= self.chosen.scale && quality.lod >= self.chosen.lod;
         let fastest = || least(workload.choices(), |quality| self.cost.of(workload.work(quality)));
         self.finest(workload, no_more).or_else(fastest).unwrap_or(Quality::FULL)
     }
@@ -204,8 +206,13 @@ mod tests {
     use super::*;
 
     fn workload() -> Workload {
-        let surfels = (0..11).map(|level| 4e5 / 1.6f64.powi(level)).collect();
-        Workload { pixels: 8e5, surfels, diameter_px: 700.0 }
+        of_lods(2.0)
+    }
+
+    /// Eleven levels of detail of ever fewer surfels, of which the first has this level of detail, px.
+    fn of_lods(first: f64) -> Workload {
+        let level = |step: i32| if step == 0 { 0.0 } else { first * 1.26f64.powi(step - 1) };
+        Workload::new(8e5, (0..11).map(|step| (level(step), 4e5 / 1.6f64.powi(step))))
     }
 
     /// Frame times of a device, ms: a fixed part, that of all pixels, that of all surfels. Each coarser level of detail costs 5 % more a pixel.
@@ -218,8 +225,11 @@ mod tests {
 
     impl Load {
         fn time(&self, quality: Quality) -> f64 {
-            let work = workload().work(quality);
-            let fewer = 1.0 + 0.05 * quality.level as f64;
+            self.time_of(workload().work(quality))
+        }
+
+        fn time_of(&self, work: Work) -> f64 {
+            let fewer = 1.0 + 0.05 * (4e5 / work.surfels).ln() / 1.6f64.ln();
             self.fixed + self.pixels * fewer * work.pixels / 8e5 + self.surfels * work.surfels / 4e5
         }
     }
@@ -274,9 +284,10 @@ mod tests {
                 assert!(*time <= 90.0, "{:?}", &frames[..=i]);
             }
             let changes = frames[200..].windows(2).filter(|pair| pair[0].0 != pair[1].0).count();
-            assert!(changes <= 2, "{changes} changes");
+            assert!(changes <= 2, "{changes} changes: {:?}", &frames[200..]);
             let (last, time) = frames[399];
-            let finer = workload().choices().filter(|q| workload().blur(*q) < 0.7 * workload().blur(last));
+            let work = workload();
+            let finer = work.choices().filter(|q| work.blur(*q) < 0.7 * work.blur(last));
             let best = finer.map(|quality| load.time(quality)).fold(f64::INFINITY, f64::min);
             assert!(best > 0.8 * 60.0, "{last:?} of {time} ms, a finer one takes {best}");
         }
@@ -350,7 +361,7 @@ mod tests {
     #[test]
     fn the_full_frame_of_a_larger_window_is_measured_again() {
         let (mut adaptive, now) = (AdaptiveResolution::new(60.0), Instant::now());
-        let small = Workload { pixels: 0.01 * workload().pixels, ..workload() };
+        let small = Workload::new(8e3, [(0.0, 4e5)]);
         let rest = |ms, created| FrameTime { ms, moving: false, created };
         adaptive.record(Quality::FULL, &small, rest(5.0, false));
         adaptive.record(Quality::FULL, &workload(), rest(500.0, true));
@@ -372,7 +383,8 @@ mod tests {
     fn a_slow_quality_is_followed_by_one_without_more_pixels_or_surfels() {
         for load in LOADS {
             let mut adaptive = started(load);
-            let all = || workload().choices().map(|quality| (quality, load.time(quality)));
+            let work = workload();
+            let all = || work.choices().map(|quality| (quality, load.time(quality)));
             (0..50).for_each(|_| {
                 all().for_each(|(quality, ms)| adaptive.record(quality, &workload(), moving(ms)))
             });
@@ -381,7 +393,7 @@ mod tests {
             for (chosen, _) in slow {
                 adaptive.chosen = chosen;
                 let next = adaptive.coarser(&workload());
-                let is_less = |next: Quality| next.scale <= chosen.scale && next.level >= chosen.level;
+                let is_less = |next: Quality| next.scale <= chosen.scale && next.lod >= chosen.lod;
                 let fits = |quality| adaptive.expected(&workload(), quality) <= TARGET;
                 let none = !all().any(|(quality, _)| is_less(quality) && fits(quality));
                 assert!(none || is_less(next) && fits(next), "{chosen:?} {next:?}");
@@ -396,20 +408,20 @@ mod tests {
     }
 
     #[test]
-    fn a_small_scene_gets_fewer_surfels_and_a_large_one_fewer_pixels() {
-        let load = Load { fixed: 5.0, pixels: 60.0, surfels: 60.0 };
-        let chosen = |diameter_px: f64| {
+    fn a_scene_of_small_surfels_gets_fewer_and_one_of_large_surfels_fewer_pixels() {
+        let load = Load { fixed: 5.0, pixels: 90.0, surfels: 35.0 };
+        let chosen = |first: f64| {
             let mut adaptive = started(load);
-            let (now, workload) = (Instant::now(), Workload { diameter_px, ..workload() });
+            let (now, workload) = (Instant::now(), of_lods(first));
             adaptive.moved(now);
             for _ in 0..100 {
                 let quality = adaptive.quality(now, &workload);
-                adaptive.record(quality, &workload, moving(load.time(quality)));
+                adaptive.record(quality, &workload, moving(load.time_of(workload.work(quality))));
             }
             adaptive.quality(now, &workload)
         };
-        let (far, near) = (chosen(150.0), chosen(20_000.0));
-        assert!(far.level > near.level && far.scale > near.scale, "{far:?} {near:?}");
+        let (small, large) = (chosen(1.0), chosen(20.0));
+        assert!(small.lod > 0.0 && large.lod == 0.0 && small.scale > large.scale, "{small:?} {large:?}");
     }
 
     #[test]

@@ -214,8 +214,8 @@ impl App {
             }
             LoadEvent::Levels(levels) => {
                 // If the surfels have changed since, their levels are rebuilt anyway.
-                if self.levels_due.1.is_none() {
-                    self.state.set_levels(levels);
+                if let Some(scene) = levels.filter(|_| self.levels_due.1.is_none()) {
+                    self.state.set_levels(scene);
                 }
                 return Ok(());
             }

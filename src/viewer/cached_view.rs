@@ -31,9 +31,10 @@ pub struct ViewRequest {
 }
 
 impl ViewRequest {
-    /// Whether this picture needs no other resources than `other` did.
+    /// Whether this picture needs no other resources than `other` did: those of every level of detail are the same.
     fn needs_only_resources_of(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.scene, &other.scene) && self.size == other.size && self.settings == other.settings
+        let settings = Settings { lod: other.settings.lod, ..self.settings.clone() };
+        Arc::ptr_eq(&self.scene, &other.scene) && self.size == other.size && settings == other.settings
     }
 
     /// Whether the picture of `other` serves this request.

@@ -43,8 +43,8 @@ pub enum LoadEvent {
     Preview(Arc<Scene>, Method, Box<Source>),
     /// The scene is on the device.
     Ready(Arc<Scene>, Method, Box<Source>),
-    /// The coarser levels of detail are on the device, finest first.
-    Levels(Vec<Arc<Scene>>),
+    /// The scene is on the device with its levels of detail, if it has any.
+    Levels(Option<Arc<Scene>>),
     /// Loading failed.
     Failed(Error),
 }
@@ -185,7 +185,7 @@ impl Worker {
     }
 
     fn upload_levels(&self, device: &Arc<Device>, model: &Model) {
-        let levels = levels::upload(device, model, || self.is_cancelled());
+        let levels = levels::upload(device, model);
         if !self.is_cancelled() {
             self.send(LoadEvent::Levels(levels));
         }
@@ -239,7 +239,6 @@ fn upload(loaded: Loaded, device: &Arc<Device>) -> Result<(Arc<Scene>, Method, B
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::viewer::levels::{COARSEST, MIN_SURFELS};
     use crate::viewer::tests::device;
     use std::sync::mpsc::{Receiver, channel};
     use std::time::{Duration, Instant};
@@ -288,15 +287,14 @@ mod tests {
             panic!("{} events", all.len())
         };
         assert_eq!((preview.count(), whole.count()), (100, 30_000));
-        let counts: Vec<u64> = levels.iter().map(|scene| scene.count()).collect();
-        assert!(counts.windows(2).all(|pair| pair[1] < pair[0]), "{counts:?}");
-        let last = counts[counts.len() - 1] as usize;
-        assert!(counts[0] > 10_000 && (MIN_SURFELS..=2 * COARSEST).contains(&last), "{counts:?}");
+        let levels = levels.as_ref().expect("so many points have levels");
+        assert!(levels.level_table().is_some_and(|table| table.starts().len() > 3));
+        assert_eq!(levels.point_count(), 30_000);
     }
 
     #[test]
-    fn levels_of_detail_of_a_two_sided_sheet_end() {
-        let Some(device) = device("levels_of_detail_of_a_two_sided_sheet_end") else {
+    fn both_sides_of_a_sheet_have_levels_of_detail() {
+        let Some(device) = device("both_sides_of_a_sheet_have_levels_of_detail") else {
             return;
         };
         let (mut loader, events) = loader(|_, _| {
@@ -312,11 +310,11 @@ mod tests {
         loader.use_device(&device);
         loader.start(Vec::new(), false);
         let all = until_levels(&loader, &events);
-        let [LoadEvent::Ready(whole, ..), LoadEvent::Levels(levels)] = &all[..] else {
+        let [LoadEvent::Ready(..), LoadEvent::Levels(Some(levels))] = &all[..] else {
             panic!("{} events", all.len())
         };
-        let counts: Vec<u64> = std::iter::once(whole).chain(levels).map(|scene| scene.count()).collect();
-        assert!(counts.windows(2).all(|pair| pair[1] < pair[0]), "{counts:?}");
+        let starts = levels.level_table().unwrap().starts();
+        assert!(starts[0] == 20_000 && levels.count() < 32_000, "{starts:?} of {}", levels.count());
     }
 
     #[test]

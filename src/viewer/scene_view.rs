@@ -4,11 +4,9 @@ use super::MethodSettings;
 use super::orbit::Orbit;
 use super::source::Source;
 use super::viewport::Viewport;
-use std::borrow::Cow;
 use std::sync::Arc;
 use surfel::geometry::Pose;
 use surfel::settings::methods::Method;
-use surfel::settings::splatting::Normalization;
 use surfel::{Scene, Settings};
 
 /// The load that a scene comes from.
@@ -33,8 +31,6 @@ impl SceneOrigin {
 pub struct SceneView {
     pub scene: Arc<Scene>,
     pub origin: SceneOrigin,
-    /// The coarser levels of detail, finest first.
-    pub levels: Vec<Arc<Scene>>,
     /// What was shown before a preview, to return to if its load does not finish.
     pub before: Option<Box<SceneView>>,
     pub source: Source,
@@ -78,15 +74,6 @@ impl SceneView {
 pub fn with_picture_of(settings: Settings, before: &Settings) -> Settings {
     let Settings { shading, background, alpha, .. } = *before;
     Settings { shading, background, alpha, ..settings }
-}
-
-/// The settings for a coarser level of detail, whose surfels have no normalization weights.
-pub fn level_settings(settings: &Settings) -> Cow<'_, Settings> {
-    let mut level = Cow::Borrowed(settings);
-    if settings.splatting.normalization == Normalization::Surfel {
-        level.to_mut().splatting.normalization = Normalization::Pixel;
-    }
-    level
 }
 
 /// Whether a scene can be rendered with these settings.

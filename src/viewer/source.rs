@@ -277,6 +277,11 @@ impl Source {
     /// Updates the scene from the appearance `old` to the applied one.
     fn update(&self, scene: &mut Arc<Scene>, device: &Arc<Device>, old: Appearance) -> Result<()> {
         let new = self.applied;
+        if scene.level_table().is_some() {
+            // Its levels of detail would not follow.
+            *scene = Arc::new(Scene::upload(device, &*self.visible_model())?);
+            return Ok(());
+        }
         if (Appearance { radius_scale: old.radius_scale, ..new }) != old {
             let colours = self.colours();
             let same = scene.colour_stream() == ColourStream::Srgb8 && !scene.streams().primitives.any();

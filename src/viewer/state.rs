@@ -5,16 +5,16 @@ use super::directions::Up;
 use super::keys::Action;
 use super::open_dialog::{DialogResult, OpenDialog};
 use super::orbit::Orbit;
-use super::quality::Workload;
+use super::quality::{COARSEST_LOD, FINEST_LOD, Quality, Workload};
 use super::scene_info::thousands;
-use super::scene_view::{SceneOrigin, SceneView, can_render, level_settings};
+use super::scene_view::{SceneOrigin, SceneView, can_render};
 use super::source::Source;
 use super::viewport::Viewport;
 use super::{MethodSettings, Options, appearance::SavedAppearance};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 use std::sync::Arc;
-use surfel::geometry::{Camera, ColourScale, Extent, Pose};
+use surfel::geometry::{Camera, ColourScale, Extent, MostDrawn, Pose};
 use surfel::settings::methods::Method;
 use surfel::settings::{Choice, Shading};
 use surfel::vk::Device;
@@ -77,7 +77,7 @@ impl ViewState {
         origin: SceneOrigin,
     ) {
         let framed = Orbit::framing(source.extent(), self.up, &self.viewport);
-        let (levels, given) = (Vec::new(), None);
+        let given = None;
         let lost = self.lost.take().map(|(method, settings, appearance)| {
             source.restore(&appearance);
             (method, settings)
@@ -93,23 +93,12 @@ impl ViewState {
                 source.restore(&preview.source.saved_appearance());
                 let (method, settings) = preview.method_for(&scene, (method, settings));
                 let before = None;
-                SceneView {
-                    scene,
-                    source,
-                    origin,
-                    orbit,
-                    framed,
-                    levels,
-                    before,
-                    method,
-                    settings,
-                    ..preview
-                }
+                SceneView { scene, source, origin, orbit, framed, before, method, settings, ..preview }
             }
             Some(view) if origin.reload && !view.origin.preview => {
                 source.restore(&view.source.saved_appearance());
                 let (method, settings) = view.method_for(&scene, (method, settings));
-                SceneView { scene, source, origin, levels, method, settings, ..view }
+                SceneView { scene, source, origin, method, settings, ..view }
             }
             before => {
                 // Before a preview, the last whole scene is kept.
@@ -118,7 +107,7 @@ impl ViewState {
                 };
                 let before = before.filter(|_| origin.preview).and_then(whole);
                 let orbit = framed;
-                SceneView { scene, source, origin, levels, before, orbit, framed, given, method, settings }
+                SceneView { scene, source, origin, before, orbit, framed, given, method, settings }
             }
         });
     }
@@ -135,17 +124,17 @@ impl ViewState {
 
     /// Applies the appearance that the user wants to the scene. A change drops the levels of detail, which do not have it.
     pub fn apply(&mut self, device: &Arc<Device>) -> Result<()> {
-        let Some(SceneView { scene, source, levels, .. }) = &mut self.view else { return Ok(()) };
+        let Some(SceneView { scene, source, .. }) = &mut self.view else { return Ok(()) };
         if source.apply(scene, device)? {
             self.version += 1;
-            levels.clear();
         }
         Ok(())
     }
 
     /// The source to build levels of detail from, if a whole scene is shown that has none.
     pub fn without_levels(&self) -> Option<Source> {
-        let view = self.view.as_ref().filter(|view| !view.origin.preview && view.levels.is_empty())?;
+        let view =
+            self.view.as_ref().filter(|view| !view.origin.preview && view.scene.level_table().is_none())?;
         Some(view.source.snapshot())
     }
 
@@ -179,10 +168,10 @@ impl ViewState {
         }
     }
 
-    /// Sets the coarser levels of detail of the scene.
-    pub fn set_levels(&mut self, levels: Vec<Arc<Scene>>) {
+    /// Replaces the scene by the same one with levels of detail.
+    pub fn set_levels(&mut self, scene: Arc<Scene>) {
         if let Some(view) = &mut self.view {
-            view.levels = levels;
+            view.scene = scene;
         }
     }
 
@@ -193,13 +182,22 @@ impl ViewState {
 
     /// What a frame of full quality renders, for adaptive resolution.
     pub fn workload(&self) -> Option<Workload> {
-        let SceneView { scene, levels, orbit, source, .. } = self.view.as_ref()?;
+        let (scene, camera, _) = self.frame(Quality::FULL)?.ok()?;
         let [width, height] = self.viewport.size.map(f64::from);
-        Some(Workload {
-            pixels: width * height,
-            surfels: std::iter::once(scene).chain(levels).map(|scene| scene.count() as f64).collect(),
-            diameter_px: 2.0 * source.extent().bounds().radius / self.viewport.units_per_px(orbit.distance()),
-        })
+        let drawn = scene.most_drawn(&camera, self.viewport.size);
+        let levels = MostDrawn::lods().map(|lod| (lod.into(), drawn.at(lod) as f64));
+        Some(Workload::new(
+            width * height,
+            levels.filter(|(lod, _)| *lod == 0.0 || (FINEST_LOD..=COARSEST_LOD).contains(lod)),
+        ))
+    }
+
+    /// Number of surfels that a frame of a quality shows: all points, also outside the picture, or at most as many of a level of detail.
+    pub fn surfels(&self, quality: Quality, workload: &Workload) -> u64 {
+        match &self.view {
+            Some(view) if quality.lod == 0.0 => view.scene.point_count(),
+            _ => workload.work(quality).surfels as u64,
+        }
     }
 
     /// Whether a whole scene is shown.
@@ -218,14 +216,11 @@ impl ViewState {
         Some(view.given(&self.viewport).unwrap_or_else(|| view.orbit.pose(&self.viewport)))
     }
 
-    /// The inputs of a frame at a level of detail; 0 is the scene itself.
-    pub fn frame(&self, level: usize) -> Option<Result<FrameInputs<'_>>> {
-        let SceneView { scene, levels, settings, source, .. } = self.view.as_ref()?;
+    /// The inputs of a frame of a quality.
+    pub fn frame(&self, quality: Quality) -> Option<Result<FrameInputs<'_>>> {
+        let SceneView { scene, settings, source, .. } = self.view.as_ref()?;
         let camera = self.pose()?.camera(&source.extent().bounds(), self.viewport.aspect());
-        let coarser = level.checked_sub(1).and_then(|level| levels.get(level));
-        let (scene, settings) =
-            coarser.map_or((scene, Cow::Borrowed(settings)), |coarser| (coarser, level_settings(settings)));
-        Some(camera.map(|camera| (scene, camera, settings)))
+        Some(camera.map(|camera| (scene, camera, quality.settings(settings))))
     }
 
     /// The orbit, for the user to move, with the viewport and what a camera frames.
@@ -260,7 +255,7 @@ impl ViewState {
         let Some(SceneView { method, settings, scene, source, .. }) = &self.view else {
             return "surfel".into();
         };
-        let (title, surfels) = (source.info().title(), thousands(scene.count()));
+        let (title, surfels) = (source.info().title(), thousands(scene.point_count()));
         format!("{title} · {surfels} surfels · {}, {} · surfel", method.name, settings.shading.name())
     }
 
@@ -277,7 +272,7 @@ impl ViewState {
 
     /// What the panels let the user choose, if a scene is shown.
     pub fn choices(&mut self) -> Option<Choices<'_>> {
-        let camera = self.frame(0).map(|frame| frame.map(|(_, camera, _)| camera));
+        let camera = self.frame(Quality::FULL).map(|frame| frame.map(|(_, camera, _)| camera));
         let Self { view, viewport, method_settings, rasterizer, .. } = self;
         let SceneView { method, settings, scene, source, .. } = view.as_mut()?;
         let streams = scene.streams();
@@ -285,7 +280,7 @@ impl ViewState {
             method,
             settings,
             source,
-            surfels: scene.count(),
+            surfels: scene.point_count(),
             primitives: streams.primitives.any(),
             weighted: streams.weights.is_some(),
             scene,
@@ -397,10 +392,10 @@ mod tests {
         // A reloaded scene keeps the camera.
         state.set_scene(scene(50), loaded(), SceneOrigin { load: 5, preview: false, reload: true });
         assert_eq!((surfels(&state), eye(&mut state)), (Some(50), above));
-        state.set_levels(vec![scene(5)]);
-        assert_eq!(state.workload().unwrap().surfels, [50.0, 5.0]);
+        state.set_levels(scene(40));
+        assert_eq!((surfels(&state), eye(&mut state)), (Some(40), above));
         state.set_scene(scene(30), loaded(), origin(6, false));
-        assert_eq!(state.workload().unwrap().surfels, [30.0]);
+        assert_eq!(surfels(&state), Some(30));
         assert_ne!(eye(&mut state), above);
     }
 }

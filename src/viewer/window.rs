@@ -97,7 +97,7 @@ impl WindowRenderer {
         let Self { presenter, hud, split_view, window, .. } = self;
         let window_size = size_of(window).map(|side| side.max(1));
         let size = state.viewport.size;
-        let inputs = state.frame(0).transpose()?;
+        let inputs = state.frame(Quality::FULL).transpose()?;
         let inputs = inputs.as_ref().map(|(scene, camera, settings)| (*scene, camera, &**settings));
         let pixels = presenter.capture(window_size, |frame| {
             split_view.record(frame, (size, size), inputs)?;
@@ -130,11 +130,7 @@ impl WindowRenderer {
         let quality =
             workload.as_ref().map_or(Quality::FULL, |workload| self.adaptive.quality(start, workload));
         ui_state.scale = quality.scale;
-        ui_state.surfels = workload
-            .as_ref()
-            .and_then(|workload| workload.surfels.get(quality.level))
-            .copied()
-            .unwrap_or(0.0);
+        ui_state.surfels = workload.as_ref().map_or(0, |workload| state.surfels(quality, workload));
         let size = state.viewport.size;
         let lay_out_again = self.hud.lay_out(&self.window, state, ui_state);
         if let Some(event) = ui_state.take_event() {
@@ -144,7 +140,7 @@ impl WindowRenderer {
             // An edge is dragged: a frame of full quality follows when it rests.
             self.adaptive.moved(start);
         }
-        self.split_view.set_options(ui_state.frame_options(state, quality.level > 0), &self.presenter)?;
+        self.split_view.set_options(ui_state.frame_options(state, quality), &self.presenter)?;
         let [has_picture, rendered] = self.present(state, ui_state, quality)?;
         // Waiting here keeps frames from queueing up: each shows the camera of its start, and its time is its own.
         self.presenter.wait()?;
@@ -214,7 +210,7 @@ impl WindowRenderer {
             let area = hud.picture_size(frame.size());
             state.viewport.size = area;
             let size = area.map(|side| scaled_side(side, quality.scale));
-            let inputs = state.frame(quality.level).transpose()?;
+            let inputs = state.frame(quality).transpose()?;
             let inputs = inputs.as_ref().map(|(scene, camera, settings)| (*scene, camera, &**settings));
             render_error = match split_view.record(frame, (area, size), inputs) {
                 // Other settings may work, so the window stays open.
@@ -236,7 +232,7 @@ impl WindowRenderer {
     fn pick(&mut self, state: &mut ViewState) -> Result<()> {
         let Some(at) = state.pick.take() else { return Ok(()) };
         let depth = self.split_view.pick(at, state.viewport.size, &self.presenter)?;
-        if let (Some(depth), Some((_, camera, _))) = (depth, state.frame(0).transpose()?) {
+        if let (Some(depth), Some((_, camera, _))) = (depth, state.frame(Quality::FULL).transpose()?) {
             let distance = camera.distance(depth)?;
             state.set_pivot(at, distance);
             self.window.request_redraw();
@@ -265,7 +261,7 @@ fn picture_info<'a>(
         size,
         picture: state.viewport.size,
         scale: ui_state.scale,
-        surfels: ui_state.surfels as u64,
+        surfels: ui_state.surfels,
         preview: state.is_preview(),
         moving,
         drawn,

@@ -102,7 +102,14 @@ fn surfels_that_are_none() {
     type Survivor = (&'static str, usize, fn(&mut Surfels));
     let drawn: [Survivor; 14] = [
         ("none", 0, |s| *s = Surfels::default()),
-        ("one", 1000, |s| *s = s.clone().coarser(1)),
+        ("one", 1000, |s| {
+            *s = Surfels {
+                positions: vec![s.positions[0]],
+                normals: vec![Vec3::Z],
+                radii: vec![2.0],
+                ..Default::default()
+            };
+        }),
         ("positions that are no numbers", 0, |s| s.positions.fill(Vec3::NAN)),
         ("every third at infinity", 1000, |s| {
             s.positions.iter_mut().step_by(3).for_each(|p| p.z = f32::INFINITY)

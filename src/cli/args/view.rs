@@ -40,7 +40,7 @@ pub struct View {
     pub rasterizer: Option<Rasterizer>,
     /// Time budget of a frame while the camera moves, ms; slower frames become coarser
     #[arg(long, value_name = "MS", default_value_t = 60.0)]
-    pub budget: f64,
+    pub frame_budget: f64,
     /// Loads files again when they change; the camera stays
     #[arg(long)]
     pub watch: bool,

@@ -1,7 +1,7 @@
 //! Sums over the discs of several points, of which an aggregated surfel is made (pajarola2004 equations 1–4).
 
 use super::{Disc, cell_of};
-use crate::geometry::{Ellipse, Surfels};
+use crate::geometry::{Colours, Ellipse, Surfels};
 use glam::{DMat3, DVec3, IVec3, Vec3};
 use std::array;
 
@@ -46,9 +46,9 @@ impl Aggregate {
             area,
             position: area * p,
             normal: area * n,
-            colour: area * surfels.light(i, light).as_dvec3(),
+            colour: area * linear(surfels, i, light).as_dvec3(),
             second: area * (outer(p) + disc),
-            two_sided: surfels.is_two_sided(i),
+            two_sided: surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[at]),
             point: i,
             largest: surfels.radii[at],
         }
@@ -114,6 +114,18 @@ impl Aggregate {
             two_sided: self.two_sided,
             point: self.point,
         }
+    }
+}
+
+/// The colour of a point in linear light; 0 without colours.
+fn linear(surfels: &Surfels, i: u32, light: &[f32; 256]) -> Vec3 {
+    match &surfels.colours {
+        Some(Colours::Srgb8(codes)) => {
+            let code = codes[i as usize];
+            Vec3::from_array(array::from_fn(|channel| light[usize::from(code[channel])]))
+        }
+        Some(Colours::Linear(linear)) => linear[i as usize].into(),
+        None => Vec3::ZERO,
     }
 }
 

@@ -5,6 +5,7 @@ use crate::viewer::events::Event;
 use crate::viewer::keys::Action;
 use crate::viewer::load::AppEvent;
 use crate::viewer::open_dialog::{DialogResult, OpenDialog};
+use crate::viewer::quality::Quality;
 use crate::viewer::scene_view::SceneOrigin;
 use crate::viewer::screenshots::{Screenshot, ScreenshotKind};
 use crate::viewer::source::Source;
@@ -111,7 +112,7 @@ impl App {
             ScreenshotKind::Window => renderer.capture(state, ui_state)?,
             ScreenshotKind::Picture | ScreenshotKind::Values => {
                 let size = state.viewport.size;
-                let Some(frame) = state.frame(0) else { return Ok(()) };
+                let Some(frame) = state.frame(Quality::FULL) else { return Ok(()) };
                 let (scene, camera, settings) = frame?;
                 let values = kind == ScreenshotKind::Values;
                 let rasterizer = state.rasterizer;

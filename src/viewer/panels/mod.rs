@@ -122,7 +122,7 @@ fn show_choices(ui: &mut Ui, state: &mut ViewState, ui_state: &mut UiState, devi
     let detail = times::FrameDetail {
         size: choices.size,
         scale: ui_state.scale,
-        surfels: ui_state.surfels as u64,
+        surfels: ui_state.surfels,
         all_surfels: choices.surfels,
     };
     ui_state.times.show(ui, &detail, choices.settings, ui_state.frame_ms);

@@ -1,7 +1,6 @@
 //! Times panel: GPU times of the passes of the last frames, and counts of culled surfels.
 
-use crate::viewer::levels::MIN_SURFELS;
-use crate::viewer::quality::MIN_SCALE;
+use crate::viewer::quality::{COARSEST_LOD, MIN_SCALE};
 use crate::viewer::scene_info::thousands;
 use crate::viewer::split_view::Reports;
 use egui::{Align2, Color32, FontId, Grid, Pos2, Rect, Sense, Ui, vec2};
@@ -213,9 +212,8 @@ fn show_detail(ui: &mut Ui, detail: &FrameDetail, settings: &Settings, frame: f6
     let size = detail.size.map(|side| (f64::from(side) * detail.scale).round());
     ui.label(format!("{} a frame, {:.0}x{:.0} px", ms(frame), size[0], size[1])).on_hover_text(format!(
         "Time from the frame's start until it is presented. While the camera moves, frames that would exceed the time budget have fewer pixels and \
-         fewer surfels: at least {:.0} % of the pixels, and at least {} surfels or all.",
+         fewer surfels: at least {:.0} % of the pixels, and a surfel for every cell of {COARSEST_LOD} px.",
         100.0 * MIN_SCALE * MIN_SCALE,
-        thousands(MIN_SURFELS as u64)
     ));
     let part = if detail.scale < 1.0 {
         format!("{:.0} % of the picture's pixels", 100.0 * detail.scale * detail.scale)

@@ -6,7 +6,7 @@ use super::split::Split;
 use super::times::Times;
 use crate::viewer::events::Event;
 use crate::viewer::layout::Layout;
-use crate::viewer::scene_view::level_settings;
+use crate::viewer::quality::Quality;
 use crate::viewer::split_view::FrameOptions;
 use crate::viewer::state::ViewState;
 use surfel::Settings;
@@ -29,7 +29,7 @@ pub struct UiState {
     /// Resolution scale of the last frame: its side as part of the whole picture's.
     pub scale: f64,
     /// How many surfels the last frame had.
-    pub surfels: f64,
+    pub surfels: u64,
     /// The shading of the left and of the right picture, and the range of its values, where it shows values.
     pub ranges: [Option<(Shading, ValueRange)>; 2],
     /// Whether the list of keys is open.
@@ -73,11 +73,8 @@ impl UiState {
     }
 
     /// Options of the next frame; `coarser` is whether it renders a coarser level of detail.
-    pub fn frame_options(&self, state: &ViewState, coarser: bool) -> FrameOptions {
-        let split = self.split(state).map(|(settings, at)| {
-            let settings = if coarser { level_settings(&settings).into_owned() } else { settings };
-            (settings, at)
-        });
+    pub fn frame_options(&self, state: &ViewState, quality: Quality) -> FrameOptions {
+        let split = self.split(state).map(|(settings, at)| (quality.settings(&settings).into_owned(), at));
         FrameOptions { profile: self.times.is_open(), version: state.version(), split }
     }
 
