@@ -56,8 +56,8 @@ bool has_surface(ivec2 pixel) {
 }
 
 // The pixel, or the nearest one with a surface if only the filter of pixels covers it: depths and normals are not filtered.
-ivec2 surface_pixel(ivec2 pixel) {
-    if (has_surface(pixel)) return pixel;
+ivec2 surface_pixel(ivec2 pixel, bool is_covered) {
+    if (!is_covered || has_surface(pixel)) return pixel;
     ivec2 last = textureSize(picture_image, 0) - 1, nearest = pixel;
     int least = 2 * MOST_RADIUS * MOST_RADIUS + 1;
     for (int y = -MOST_RADIUS; y <= MOST_RADIUS; y++) {
@@ -75,9 +75,11 @@ ivec2 surface_pixel(ivec2 pixel) {
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy) - composite.origin;
     vec4 colour = texelFetch(picture_image, pixel, 0);
-    if (colour.a == 0.0) discard;
+    // Some devices go on after a discard: without the condition they would search for a surface at every pixel beside the object.
+    bool is_covered = colour.a != 0.0;
+    if (!is_covered) discard;
     out_image = over_host(colour);
-    pixel = surface_pixel(pixel);
+    pixel = surface_pixel(pixel, is_covered);
 #ifdef WITH_NORMALS
     out_normal = vec4(texelFetch(normal_image, pixel, 0).xyz, 1.0);
 #endif
