@@ -187,20 +187,22 @@ impl<'r, 'a> Encoder<'r, 'a> {
         };
     }
 
-    /// Blits a range of columns of `image`, as fractions of its width, to the `area` px at the window's top left.
+    /// Copies a range of columns of `image`, as fractions of its width, to the `area` px at the window's top left, scaled. The image has the
+    /// window's format.
     #[cfg(feature = "window")]
-    pub fn blit_columns(
+    pub fn copy_columns(
         &mut self,
         image: &Image,
         window: &super::Presented,
         area: [u32; 2],
         columns: [f64; 2],
     ) {
+        assert_eq!(image.format, window.format(), "a copy to another format");
         let [width, height] = window.size();
         self.scale(image, (window.image, [area[0].min(width), area[1].min(height)]), columns);
     }
 
-    /// Blits a range of columns of `image` to the top left `size` px of another image in `TRANSFER_DST_OPTIMAL`.
+    /// Copies a range of columns of `image` to the top left `size` px of another image of its format in `TRANSFER_DST_OPTIMAL`, scaled.
     #[cfg(feature = "window")]
     pub(super) fn scale(&mut self, image: &Image, (to, size): (vk::Image, [u32; 2]), columns: [f64; 2]) {
         let layers = vk::ImageSubresourceLayers {
@@ -208,27 +210,38 @@ impl<'r, 'a> Encoder<'r, 'a> {
             layer_count: 1,
             ..Default::default()
         };
+        let edges = |width: u32| columns.map(|part| (part.clamp(0.0, 1.0) * f64::from(width)).round() as i32);
         let corners = |size: [u32; 2]| {
-            let [from, to] = columns.map(|part| (part.clamp(0.0, 1.0) * f64::from(size[0])).round() as i32);
+            let [from, to] = edges(size[0]);
             [vk::Offset3D { x: from, y: 0, z: 0 }, vk::Offset3D { x: to, y: size[1] as i32, z: 1 }]
         };
         let [source, target] = [image.size(), size].map(corners);
         if [source, target].iter().any(|[from, to]| from.x >= to.x) {
             return;
         }
-        let region = vk::ImageBlit::default()
-            .src_subresource(layers)
-            .src_offsets(source)
-            .dst_subresource(layers)
-            .dst_offsets(target);
-        // Equal sizes: copy without filtering.
-        let filter = if image.size() == size { vk::Filter::NEAREST } else { vk::Filter::LINEAR };
         use vk::ImageLayout as Layout;
-        let layouts = [Layout::TRANSFER_SRC_OPTIMAL, Layout::TRANSFER_DST_OPTIMAL];
-        // SAFETY: recorded outside a render pass; the pass's uses brought the image into this layout, and the other is in its own.
-        unsafe {
-            let raw = self.raw();
-            raw.cmd_blit_image(self.rec.cmd, image.raw, layouts[0], to, layouts[1], &[region], filter);
+        let (from, layouts) = (image.raw, [Layout::TRANSFER_SRC_OPTIMAL, Layout::TRANSFER_DST_OPTIMAL]);
+        let raw = self.raw();
+        if image.size() == size {
+            let [first, end] = edges(size[0]);
+            let region = vk::ImageCopy::default()
+                .src_subresource(layers)
+                .src_offset(source[0])
+                .dst_subresource(layers)
+                .dst_offset(target[0])
+                .extent(vk::Extent3D { width: (end - first) as u32, height: size[1], depth: 1 });
+            // SAFETY: recorded outside a render pass; the pass's uses brought the image into this layout, and the other is in its own; both have
+            // one format.
+            unsafe { raw.cmd_copy_image(self.rec.cmd, from, layouts[0], to, layouts[1], &[region]) };
+        } else {
+            let region = vk::ImageBlit::default()
+                .src_subresource(layers)
+                .src_offsets(source)
+                .dst_subresource(layers)
+                .dst_offsets(target);
+            let filter = vk::Filter::LINEAR;
+            // SAFETY: as above.
+            unsafe { raw.cmd_blit_image(self.rec.cmd, from, layouts[0], to, layouts[1], &[region], filter) };
         }
     }
 }

@@ -47,6 +47,7 @@ pub struct Presented {
     framebuffer: vk::Framebuffer,
     overlay: vk::RenderPass,
     size: [u32; 2],
+    format: vk::Format,
     /// Number of the frame among those of its presenter, and the id of the presenter.
     pub(crate) number: u64,
     pub(crate) presenter: u64,
@@ -87,6 +88,11 @@ impl Presented {
     /// Width and height, px.
     pub fn size(&self) -> [u32; 2] {
         self.size
+    }
+
+    /// The image's format: 8 bits each of sRGB and α.
+    pub fn format(&self) -> vk::Format {
+        self.format
     }
 
     /// A stake for an object that records into the frame.
@@ -217,6 +223,11 @@ impl Presenter {
         &self.device
     }
 
+    /// The format of the window's images: 8 bits each of sRGB and α.
+    pub fn format(&self) -> vk::Format {
+        self.format.format
+    }
+
     /// The presenter's unique id.
     pub(crate) fn number(&self) -> u64 {
         self.number
@@ -234,12 +245,12 @@ impl Presenter {
         }
     }
 
-    /// Blits an image of `format` to the window's format once, so that a driver which compiles a shader for the first blit does so now.
-    /// Some drivers compile another one for power-of-two sizes: these sizes are not.
-    pub fn rehearse(&self, format: vk::Format) -> Result<()> {
-        let target = |format, size, also| Image::target(&self.device, "rehearsed", format, size, also);
-        let from = target(format, [3, 3], ImageUse::Output)?;
-        let to = target(self.format.format, [5, 5], ImageUse::Window)?;
+    /// Scales an image of the window's format once, so that a driver which compiles a shader for the first blit does so now. Some drivers
+    /// compile another one for power-of-two sizes: these sizes are not.
+    pub fn rehearse(&self) -> Result<()> {
+        let target = |size, also| Image::target(&self.device, "rehearsed", self.format.format, size, also);
+        let from = target([3, 3], ImageUse::Output)?;
+        let to = target([5, 5], ImageUse::Window)?;
         Commands::new(&self.device, false)?.run(|rec| {
             let uses = [from.with(Access::COPY_READ), to.with(Access::SCALE_WRITE)];
             rec.pass("rehearse", &uses).scale(&from, (to.raw, to.size()), [0.0, 1.0]);
@@ -289,6 +300,7 @@ impl Presenter {
             framebuffer,
             overlay: self.overlay.raw,
             size,
+            format: self.format.format,
             number: self.frames,
             presenter: self.number,
             stakes: RefCell::default(),

@@ -1,4 +1,4 @@
-//! Offscreen view: a picture of a scene in frames of a window, with colours in linear float, and depth, of any size.
+//! Offscreen view: a picture of a scene in frames of a window, with colours and depth, of any size.
 
 mod colour_map;
 mod range;
@@ -20,8 +20,8 @@ use scalar_colours::{ScalarColours, is_scalar};
 use std::cell::RefCell;
 use std::sync::Arc;
 
-/// Formats of the targets.
-const COLOUR: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+/// Format of the scalars of a picture that shows these; other pictures have the window's format.
+const SCALARS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 
 /// A picture in frames of one [`Presenter`]. It is kept until it is drawn again. It upholds the safety rules of [`Renderer`]: it draws in
@@ -29,10 +29,10 @@ const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 /// submitted.
 pub struct OffscreenView {
     // Drop order: views before their resources, and the pass after all framebuffers.
-    renderer: Renderer,
     /// Colours of a scalar picture.
     scalar_colours: Option<ScalarColours>,
     targets: Option<Targets>,
+    painter: Painter,
     /// Resources of frames in flight, each with the number of the last frame that may use it.
     old: Vec<(u64, DeferredResources)>,
     timestamps: Option<Timestamps>,
@@ -44,18 +44,27 @@ pub struct OffscreenView {
     stake: RefCell<Option<(u64, Arc<Stake>)>>,
     /// Id of the presenter.
     presenter: u64,
-    pass: RenderPass,
+    rasterizer: RasterizerChoice,
     device: Arc<Device>,
+}
+
+/// Draws pictures whose colours have one format.
+struct Painter {
+    renderer: Renderer,
+    pass: RenderPass,
+    format: vk::Format,
 }
 
 /// A scene with camera and settings.
 pub type SceneView<'a> = (&'a Arc<Scene>, &'a Camera, &'a Settings);
 
 /// Resources that are replaced.
+#[derive(Default)]
 struct DeferredResources {
     // Views before their resources.
     _scalar_colours: Option<ScalarColours>,
     _targets: Option<Targets>,
+    _painter: Option<Painter>,
 }
 
 struct Targets {
@@ -70,34 +79,18 @@ impl OffscreenView {
     /// Creates a view for frames of `presenter`; nothing is drawn yet.
     pub fn new(presenter: &Presenter, rasterizer: RasterizerChoice) -> Result<Self> {
         let device = presenter.device();
-        presenter.rehearse(COLOUR)?;
-        let pass = RenderPass::new(device, &[Attachment::Cleared(COLOUR)], Some(Attachment::Cleared(DEPTH)))?;
-        let target = Target {
-            pass: Pass::Subpass { pass: pass.handle(), subpass: 0 },
-            colours: vec![COLOUR],
-            depth: Some(DEPTH),
-            stencil: vk::Format::UNDEFINED,
-            reversed: true,
-            samples: vk::SampleCountFlags::TYPE_1,
-            picture: 0,
-            normal: None,
-            id: None,
-            encode: false,
-        };
-        let options = Options { frames_in_flight: FRAMES_IN_FLIGHT, rasterizer, ..Options::new(target) };
-        // SAFETY: the target is this pass, which outlives the renderer; `drop` waits for the GPU.
-        let renderer = unsafe { Renderer::new(device, options)? };
+        presenter.rehearse()?;
         Ok(Self {
-            renderer,
             scalar_colours: None,
             targets: None,
+            painter: Painter::new(device, presenter.format(), rasterizer)?,
             old: Vec::new(),
             timestamps: None,
             measured: false,
             drawn: None,
             stake: RefCell::default(),
             presenter: presenter.number(),
-            pass,
+            rasterizer,
             device: device.clone(),
         })
     }
@@ -124,16 +117,25 @@ impl OffscreenView {
         self.take_part(frame);
         // The GPU has finished all but the last frames.
         self.old.retain(|(last, _)| last + u64::from(FRAMES_IN_FLIGHT) > frame.number);
+        let shading = content.map(|(.., settings)| settings.shading).filter(|shading| is_scalar(*shading));
+        let format = if shading.is_some() { SCALARS } else { frame.format() };
+        if self.painter.format != format {
+            let painter = Painter::new(&self.device, format, self.rasterizer)?;
+            self.defer(frame.number, true);
+            let _painter = Some(std::mem::replace(&mut self.painter, painter));
+            self.old.push((frame.number, DeferredResources { _painter, ..Default::default() }));
+            self.measured = false;
+        }
         if self.targets.as_ref().is_none_or(|targets| targets.colour.size() != size) {
             self.defer(frame.number, true);
-            self.targets = Some(Targets::new(&self.device, &self.pass, size)?);
+            self.targets = Some(Targets::new(&self.device, &self.painter, size)?);
         }
-        let shading = content.map(|(.., settings)| settings.shading).filter(|shading| is_scalar(*shading));
         if self.scalar_colours.as_ref().map(|scalar_colours| scalar_colours.shading) != shading {
             self.defer(frame.number, false);
             let picture = self.targets.as_ref().map(|targets| &targets.colour);
-            let made =
-                shading.zip(picture).map(|(shading, of)| ScalarColours::new(&self.device, shading, of));
+            let made = shading
+                .zip(picture)
+                .map(|(shading, of)| ScalarColours::new(&self.device, shading, of, frame.format()));
             match made.transpose() {
                 Ok(made) => self.scalar_colours = made,
                 Err(error) => {
@@ -149,8 +151,8 @@ impl OffscreenView {
     /// Defers the destruction of the scalar colours, and of the targets if `with_targets`, until frame `last` is over.
     fn defer(&mut self, last: u64, with_targets: bool) {
         let targets = if with_targets { self.targets.take() } else { None };
-        let deferred = DeferredResources { _scalar_colours: self.scalar_colours.take(), _targets: targets };
-        self.old.push((last, deferred));
+        let _scalar_colours = self.scalar_colours.take();
+        self.old.push((last, DeferredResources { _scalar_colours, _targets: targets, _painter: None }));
     }
 
     /// Whether there is no picture, not even a background.
@@ -186,10 +188,12 @@ impl OffscreenView {
         let mut drawn = Ok(());
         if let Some((scene, camera, settings)) = content {
             let view = View::whole(*camera, targets.colour.size());
-            self.renderer.measure(Measured { times: measured, counts: measured });
+            self.painter.renderer.measure(Measured { times: measured, counts: measured });
             // SAFETY: the presenter's command buffer is recording outside a render pass, and the presenter submits in order; `draw` runs
             // once per frame, so that the number of frames in flight is as stated.
-            drawn = unsafe { self.renderer.prepare(frame.cmd, scene, &view, &before_background(settings)) };
+            drawn = unsafe {
+                self.painter.renderer.prepare(frame.cmd, scene, &view, &before_background(settings))
+            };
         }
         if measured && self.timestamps.is_none() {
             self.timestamps = Timestamps::new(&self.device)?;
@@ -207,7 +211,7 @@ impl OffscreenView {
         let draws = enc.render_over(framebuffer, behind);
         if content.is_some() && drawn.is_ok() {
             // SAFETY: inside the renderer's target.
-            drawn = unsafe { self.renderer.draw(frame.cmd) };
+            drawn = unsafe { self.painter.renderer.draw(frame.cmd) };
         }
         drop(draws);
         drop(enc);
@@ -225,7 +229,7 @@ impl OffscreenView {
         drawn
     }
 
-    /// Blits a range of columns of the picture, as fractions of its width, to the `area` px at the top left of the window, scaled. Depths,
+    /// Copies a range of columns of the picture, as fractions of its width, to the `area` px at the top left of the window, scaled. Depths,
     /// normals, overlaps and weights have the colours of a PNG.
     ///
     /// # Errors
@@ -240,7 +244,7 @@ impl OffscreenView {
         let uses = [image.with(Access::COPY_READ)];
         let mut rec = frame.recorder();
         rec.assume_layouts(&uses);
-        rec.pass("show", &uses).blit_columns(image, frame, area, columns);
+        rec.pass("show", &uses).copy_columns(image, frame, area, columns);
         Ok(())
     }
 
@@ -259,9 +263,9 @@ impl OffscreenView {
             return Ok(None);
         }
         // SAFETY: every frame is over.
-        unsafe { self.renderer.finish()? };
+        unsafe { self.painter.renderer.finish()? };
         let own = self.timestamps.as_ref().map_or(Ok(Vec::new()), Timestamps::read)?;
-        let report = self.renderer.report().cloned();
+        let report = self.painter.renderer.report().cloned();
         Ok(report.map(|mut report| {
             // `screen` includes it.
             report.pass_times.retain(|time| time.label != "composite");
@@ -306,9 +310,33 @@ impl Drop for OffscreenView {
     }
 }
 
+impl Painter {
+    fn new(device: &Arc<Device>, format: vk::Format, rasterizer: RasterizerChoice) -> Result<Self> {
+        let pass = RenderPass::new(device, &[Attachment::Cleared(format)], Some(Attachment::Cleared(DEPTH)))?;
+        let target = Target {
+            pass: Pass::Subpass { pass: pass.handle(), subpass: 0 },
+            colours: vec![format],
+            depth: Some(DEPTH),
+            stencil: vk::Format::UNDEFINED,
+            reversed: true,
+            samples: vk::SampleCountFlags::TYPE_1,
+            picture: 0,
+            normal: None,
+            id: None,
+            encode: false,
+        };
+        let options = Options { frames_in_flight: FRAMES_IN_FLIGHT, rasterizer, ..Options::new(target) };
+        // SAFETY: the target is this pass, which outlives the renderer; the view's `drop` waits for the GPU, and a replaced painter is kept until
+        // its frames are over.
+        let renderer = unsafe { Renderer::new(device, options)? };
+        Ok(Self { renderer, pass, format })
+    }
+}
+
 impl Targets {
-    fn new(device: &Arc<Device>, pass: &RenderPass, size: [u32; 2]) -> Result<Self> {
-        let colour = Image::target(device, "screen", COLOUR, size, ImageUse::Output)?;
+    fn new(device: &Arc<Device>, painter: &Painter, size: [u32; 2]) -> Result<Self> {
+        let Painter { pass, format, .. } = painter;
+        let colour = Image::target(device, "screen", *format, size, ImageUse::Output)?;
         let depth = Image::target(device, "screen depth", DEPTH, size, ImageUse::Output)?;
         let pixels = u64::from(size[0]) * u64::from(size[1]);
         Ok(Self {

@@ -1,6 +1,5 @@
 //! Colours of a scalar picture, such as depth.
 
-use super::COLOUR;
 use super::colour_map::{ColourMap, ColourMapViews};
 use super::range::{Range, range_of};
 use crate::error::Result;
@@ -10,6 +9,7 @@ use crate::vk::shaders::layout;
 use crate::vk::{
     Access, Attachment, Buffer, DescriptorSet, Device, Image, ImageUse, Recorder, RenderPass, Use,
 };
+use ash::vk;
 use std::sync::Arc;
 
 /// Minimum α of a pixel that shows a surface: half of a sample of coverage.
@@ -36,11 +36,11 @@ pub(super) struct ScalarColours {
 }
 
 impl ScalarColours {
-    /// Creates the colours of `picture` with `shading`. The picture must outlive them.
-    pub fn new(device: &Arc<Device>, shading: Shading, picture: &Image) -> Result<Self> {
-        let pass = RenderPass::new(device, &[Attachment::Cleared(COLOUR)], None)?;
+    /// Creates the colours, in `format`, of `picture` with `shading`. The picture must outlive them.
+    pub fn new(device: &Arc<Device>, shading: Shading, picture: &Image, format: vk::Format) -> Result<Self> {
+        let pass = RenderPass::new(device, &[Attachment::Cleared(format)], None)?;
         let (range_pass, map) = (Range::new(device)?, ColourMap::new(device, shading, &pass)?);
-        let image = Image::target(device, "screen colours", COLOUR, picture.size(), ImageUse::Output)?;
+        let image = Image::target(device, "screen colours", format, picture.size(), ImageUse::Output)?;
         let range = Range::buffer(device)?;
         let views = map.views(device, picture, &range, (&pass, &image))?;
         let range_view = Range::view(device, picture, &range)?;
