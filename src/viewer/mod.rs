@@ -12,7 +12,6 @@ mod appearance;
 mod cached_view;
 mod choices;
 mod comparison;
-mod cost;
 mod directions;
 mod events;
 mod exact_surface;

@@ -1,44 +1,60 @@
-//! Quality of a frame: its resolution and its level of detail.
+//! Quality of a frame: its resolution, its level of detail, and whether its pixels are filtered.
 
-use super::cost::Work;
-use std::borrow::Cow;
 use surfel::Settings;
+use surfel::settings::Edges;
 
-/// Resolution scales of the side. Neighbours differ by 1.6 in pixels, so that one step finer takes at most 1.6 times as long.
-const SCALES: [f64; 7] = [1.0, 0.8, 0.63, 0.5, 0.4, 0.32, MIN_SCALE];
+/// Resolution scales of the side, below the full one. Neighbours differ by 1.6 in pixels; the first by 2.5 from the full one, as smaller pictures have
+/// to be scaled, which takes as long as what a few pixels less would save.
+const SCALES: [f64; 5] = [0.63, 0.5, 0.4, 0.32, MIN_SCALE];
 /// The least resolution scale: coarser pictures are unreadable.
 pub const MIN_SCALE: f64 = 0.25;
 
 /// The finest level of detail above that of all points, px: finer ones differ less than is worth a change.
-pub const FINEST_LOD: f64 = 2.0;
-/// The coarsest level of detail, px: coarser pictures are unreadable.
+const FINEST_LOD: f64 = 2.0;
+/// The coarsest level of detail, px: coarser ones are hardly faster.
 pub const COARSEST_LOD: f64 = 12.0;
-/// Side of the pixels that blur as much as cells of a level of detail, relative to these: pictures of the Stanford dragon, 1024×768, are as near to
-/// that of all points with cells of 6 px and 8 px as with 0.7 and 0.45 of the resolution (`surfel render --lod PX`, `surfel compare`).
-const BLURRED: f64 = 0.2;
 /// A level with a greater part than this of the surfels of a finer one saves nothing.
 const FEWER: f64 = 0.9;
 
-/// Resolution and level of detail of a frame.
+/// Cost of a pixel that is filtered and whose edges are mixed, relative to that of others.
+const FILTER_COST: f64 = 1.3;
+/// Time of a frame on a computer without a GPU: a fixed part, ms.
+const FIXED: f64 = 10.0;
+/// A pixel, ms.
+const PIXEL: f64 = 4e-5;
+/// A surfel, ms.
+const SURFEL: f64 = 4.5e-4;
+/// A pixel of the window to which a smaller picture is scaled, ms.
+const SCALED: f64 = 1.7e-5;
+
+/// Resolution and level of detail of a frame, and whether its pixels are filtered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quality {
     /// Side of the picture as part of the full one's.
     pub scale: f64,
     /// Level of detail, px of full resolution; 0 has all points.
     pub lod: f64,
+    /// Whether pixels are filtered after shading and edges are mixed, as the settings say; otherwise splats have the whole low-pass filter.
+    pub filtered: bool,
 }
 
 impl Quality {
     /// Every pixel and every point.
-    pub const FULL: Self = Self { scale: 1.0, lod: 0.0 };
+    pub const FULL: Self = Self { scale: 1.0, lod: 0.0, filtered: true };
+
+    /// Whether this is finer than `other`.
+    pub fn is_finer_than(self, other: Self) -> bool {
+        let order = |quality: Self| (-quality.scale, quality.lod, u8::from(!quality.filtered));
+        order(self) < order(other)
+    }
 
     /// The settings of a frame of this quality.
-    pub fn settings(self, settings: &Settings) -> Cow<'_, Settings> {
-        let lod = (self.scale * self.lod) as f32;
-        if lod <= settings.lod {
-            Cow::Borrowed(settings)
+    pub fn settings(self, settings: &Settings) -> Settings {
+        let lod = settings.lod.max((self.scale * self.lod) as f32);
+        if self.filtered {
+            Settings { lod, ..settings.clone() }
         } else {
-            Cow::Owned(Settings { lod, ..settings.clone() })
+            Settings { lod, pixel_filter: 0.0, edges: Edges::Nearest, ..settings.clone() }
         }
     }
 }
@@ -62,10 +78,12 @@ pub struct Workload {
 }
 
 impl Workload {
-    /// A picture of so many pixels, with levels of detail of cells of at most this side, px, and at most so many surfels; finest first.
+    /// A picture of so many pixels, with levels of detail of cells of at most this side, px, and at most so many surfels; finest first. Those
+    /// that are of no use are left out.
     pub fn new(pixels: f64, levels: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let mut list: Vec<Level> = Vec::new();
-        for (lod, surfels) in levels {
+        let of_use = |(lod, _): &(f64, f64)| *lod == 0.0 || (FINEST_LOD..=COARSEST_LOD).contains(lod);
+        for (lod, surfels) in levels.into_iter().filter(of_use) {
             if list.last().is_none_or(|finer| surfels < FEWER * finer.surfels) {
                 list.push(Level { lod, surfels });
             }
@@ -73,35 +91,31 @@ impl Workload {
         Self { pixels, levels: list }
     }
 
-    /// Number of the level of this level of detail.
-    fn level(&self, quality: Quality) -> usize {
-        self.levels.iter().rposition(|level| level.lod <= quality.lod).unwrap_or(0)
+    /// Pixels of the window's picture.
+    pub fn pixels(&self) -> f64 {
+        self.pixels
     }
 
-    /// What a frame of this quality has to do.
-    pub fn work(&self, quality: Quality) -> Work {
-        let surfels = self.levels.get(self.level(quality)).map_or(0.0, |level| level.surfels);
-        Work { pixels: self.pixels * quality.scale * quality.scale, surfels }
+    /// Number of surfels that a frame of this quality draws at most.
+    pub fn surfels(&self, quality: Quality) -> f64 {
+        self.levels.iter().rfind(|level| level.lod <= quality.lod).map_or(0.0, |level| level.surfels)
     }
 
-    /// Size of the smallest detail that a frame shows, px of full resolution: the distance of its pixels and that of its surfels, combined.
-    pub fn blur(&self, quality: Quality) -> f64 {
-        (1.0 / quality.scale).hypot(BLURRED * quality.lod)
+    /// Time of a frame on a computer without a GPU, ms. On other devices qualities next to each other have about the same ratio.
+    pub fn typical_ms(&self, quality: Quality) -> f64 {
+        let pixels = self.pixels * quality.scale * quality.scale;
+        let pixel = if quality.filtered { FILTER_COST * PIXEL } else { PIXEL };
+        let scaled = if quality.scale < 1.0 { self.pixels } else { 0.0 };
+        FIXED + pixel * pixels + SURFEL * self.surfels(quality) + SCALED * scaled
     }
 
-    /// Every combination of resolution scale and level of detail.
-    pub fn choices(&self) -> impl Iterator<Item = Quality> {
-        self.levels.iter().flat_map(|level| SCALES.map(|scale| Quality { scale, lod: level.lod }))
-    }
-
-    /// Whether this is at most one step finer than `other`, in resolution or in level of detail. Only then do the times of frames at `other`
-    /// predict those at this quality.
-    pub fn is_one_step_finer_at_most(&self, quality: Quality, other: Quality) -> bool {
-        let scale = |quality: Quality| SCALES.iter().position(|scale| *scale == quality.scale).unwrap_or(0);
-        let [pixels, surfels] = [
-            scale(other).saturating_sub(scale(quality)),
-            self.level(other).saturating_sub(self.level(quality)),
-        ];
-        pixels + surfels <= 1
+    /// The qualities, finest first: filtered pixels go first, then points, then pixels, as cells of a few px cost less of the picture than
+    /// pixels do (`surfel render --lod PX`, `surfel compare`).
+    pub fn qualities(&self) -> impl DoubleEndedIterator<Item = Quality> {
+        let coarsest = self.levels.last().map_or(0.0, |level| level.lod);
+        let unfiltered = |scale, lod| Quality { scale, lod, filtered: false };
+        std::iter::once(Quality::FULL)
+            .chain(self.levels.iter().map(move |level| unfiltered(1.0, level.lod)))
+            .chain(SCALES.map(move |scale| unfiltered(scale, coarsest)))
     }
 }

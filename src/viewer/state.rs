@@ -5,14 +5,13 @@ use super::directions::Up;
 use super::keys::Action;
 use super::open_dialog::{DialogResult, OpenDialog};
 use super::orbit::Orbit;
-use super::quality::{COARSEST_LOD, FINEST_LOD, Quality, Workload};
+use super::quality::{Quality, Workload};
 use super::scene_info::thousands;
 use super::scene_view::{SceneOrigin, SceneView, can_render};
 use super::source::Source;
 use super::viewport::Viewport;
 use super::{MethodSettings, Options, appearance::SavedAppearance};
 use glam::{DVec2, DVec3};
-use std::borrow::Cow;
 use std::sync::Arc;
 use surfel::geometry::{Camera, ColourScale, Extent, MostDrawn, Pose};
 use surfel::settings::methods::Method;
@@ -43,7 +42,7 @@ pub struct ViewState {
 }
 
 /// A scene or a level of detail, its camera and its settings.
-type FrameInputs<'a> = (&'a Arc<Scene>, Camera, Cow<'a, Settings>);
+type FrameInputs<'a> = (&'a Arc<Scene>, Camera, Settings);
 
 impl ViewState {
     /// The state of an empty window.
@@ -186,17 +185,14 @@ impl ViewState {
         let [width, height] = self.viewport.size.map(f64::from);
         let drawn = scene.most_drawn(&camera, self.viewport.size);
         let levels = MostDrawn::lods().map(|lod| (lod.into(), drawn.at(lod) as f64));
-        Some(Workload::new(
-            width * height,
-            levels.filter(|(lod, _)| *lod == 0.0 || (FINEST_LOD..=COARSEST_LOD).contains(lod)),
-        ))
+        Some(Workload::new(width * height, levels))
     }
 
     /// Number of surfels that a frame of a quality shows: all points, also outside the picture, or at most as many of a level of detail.
     pub fn surfels(&self, quality: Quality, workload: &Workload) -> u64 {
         match &self.view {
             Some(view) if quality.lod == 0.0 => view.scene.point_count(),
-            _ => workload.work(quality).surfels as u64,
+            _ => workload.surfels(quality) as u64,
         }
     }
 

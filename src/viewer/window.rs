@@ -98,7 +98,7 @@ impl WindowRenderer {
         let window_size = size_of(window).map(|side| side.max(1));
         let size = state.viewport.size;
         let inputs = state.frame(Quality::FULL).transpose()?;
-        let inputs = inputs.as_ref().map(|(scene, camera, settings)| (*scene, camera, &**settings));
+        let inputs = inputs.as_ref().map(|(scene, camera, settings)| (*scene, camera, settings));
         let pixels = presenter.capture(window_size, |frame| {
             split_view.record(frame, (size, size), inputs)?;
             hud.record(frame)
@@ -211,7 +211,7 @@ impl WindowRenderer {
             state.viewport.size = area;
             let size = area.map(|side| scaled_side(side, quality.scale));
             let inputs = state.frame(quality).transpose()?;
-            let inputs = inputs.as_ref().map(|(scene, camera, settings)| (*scene, camera, &**settings));
+            let inputs = inputs.as_ref().map(|(scene, camera, settings)| (*scene, camera, settings));
             render_error = match split_view.record(frame, (area, size), inputs) {
                 // Other settings may work, so the window stays open.
                 Err(error @ (Error::Usage(_) | Error::Memory { .. })) => Some(error.to_string()),

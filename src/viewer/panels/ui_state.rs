@@ -74,7 +74,7 @@ impl UiState {
 
     /// Options of the next frame; `coarser` is whether it renders a coarser level of detail.
     pub fn frame_options(&self, state: &ViewState, quality: Quality) -> FrameOptions {
-        let split = self.split(state).map(|(settings, at)| (quality.settings(&settings).into_owned(), at));
+        let split = self.split(state).map(|(settings, at)| (quality.settings(&settings), at));
         FrameOptions { profile: self.times.is_open(), version: state.version(), split }
     }
 
