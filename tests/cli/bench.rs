@@ -17,7 +17,8 @@ fn an_input_is_measured_stored_and_reported_again() {
     let Some(program) = Program::with_device("an_input_is_measured_stored_and_reported_again") else {
         return;
     };
-    let arguments = "scene:torus --points 1000,3000 --method perspective-ewa,pull-push --size 64x64";
+    let methods = if_whole("perspective-ewa,pull-push", "perspective-ewa");
+    let arguments = &format!("scene:torus --points 1000,3000 --method {methods} --size 64x64");
     let run = program.run(&format!("bench {arguments} --json a.json --csv a.csv --report page"));
     assert!(run.text().contains("scene:torus") && run.text().contains("perspective-ewa"), "{}", run.text());
     let results = json(&program, "a.json");

@@ -286,8 +286,8 @@ fn cameras_that_see_nothing() {
         ("with a projection of zeros", changed(|c| c.projection = DMat4::ZERO)),
         ("with a projection that squints", changed(|c| c.projection.x_axis = DVec4::new(1.0, 1.0, 1.0, 1.0))),
     ];
-    for method in methods() {
-        for rasterizer in BOTH {
+    for (i, method) in methods().into_iter().enumerate() {
+        for &rasterizer in &BOTH[if_whole(0..2, i % 2..i % 2 + 1)] {
             // One for all, so that pipelines are made once.
             let mut renderer = Renderer::new(&device, options(rasterizer)).unwrap();
             for (name, camera) in &cameras {
