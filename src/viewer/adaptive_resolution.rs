@@ -10,7 +10,7 @@ const TARGET: f64 = 0.8;
 /// Part of the budget that the next finer quality may be expected to take if it was never measured.
 const NEXT_TARGET: f64 = 0.9;
 /// The same for finer ones than the next.
-const FAR_TARGET: f64 = 0.6;
+const FAR_TARGET: f64 = 0.7;
 /// Expected part of the budget above which frames are too slow: a coarser quality is chosen after [`SLOW_FRAMES`] of them.
 const LIMIT: f64 = 1.0;
 /// The same, for the next frame.
@@ -23,6 +23,10 @@ const PATIENCE: u32 = 4;
 const MAX_PATIENCE: u32 = 512;
 /// Number of frames after which a finer quality counts as stable.
 const STABLE_FRAMES: u32 = 40;
+/// Number of frames without a finer quality after which the patience is halved.
+const FORGIVING_FRAMES: u32 = 1000;
+/// How many times as long a quality waits whose known time does not fit the budget, though the present one's suggests that it does.
+const DOUBT: u32 = 4;
 /// Number of frames of a quality after which its factor is known: from then on, times tell the load.
 const KNOWN_FRAMES: f64 = 4.0;
 
@@ -149,13 +153,11 @@ impl AdaptiveResolution {
         if self.factors.is_empty() {
             self.load = measured;
         }
-        let own = match self.factors.iter().position(|known| known.quality == quality) {
-            Some(own) => &mut self.factors[own],
-            None => {
-                self.factors.push(Factor { quality, factor: 0.0, frames: 0.0 });
-                self.factors.last_mut().unwrap()
-            }
-        };
+        let own = self.factors.iter().position(|known| known.quality == quality).unwrap_or_else(|| {
+            self.factors.push(Factor { quality, factor: 0.0, frames: 0.0 });
+            self.factors.len() - 1
+        });
+        let own = &mut self.factors[own];
         if own.frames < KNOWN_FRAMES {
             own.frames += 1.0;
             own.factor += (measured / self.load - own.factor) / own.frames;
@@ -177,7 +179,7 @@ impl AdaptiveResolution {
     /// Keeps the present quality unless it is too slow, or enough frames in a row have left time for a finer one.
     fn choose(&mut self, workload: &Workload) {
         self.frames_since_finer = self.frames_since_finer.saturating_add(1);
-        if self.frames_since_finer == STABLE_FRAMES {
+        if self.frames_since_finer.is_multiple_of(FORGIVING_FRAMES) {
             self.patience = (self.patience / 2).max(PATIENCE);
         }
         let expected = self.expected(workload, self.chosen);
@@ -217,7 +219,7 @@ impl AdaptiveResolution {
         let next =
             || finer().next_back().filter(|next| of_typical * workload.typical_ms(*next) <= NEXT_TARGET);
         let certain = finer().find(fits).map(|quality| (quality, self.patience));
-        certain.or_else(|| next().map(|next| (next, if is_known(&next) { 4 } else { 1 } * self.patience)))
+        certain.or_else(|| next().map(|next| (next, if is_known(&next) { DOUBT } else { 1 } * self.patience)))
     }
 }
 
@@ -231,7 +233,7 @@ mod tests {
 
     /// Eleven levels of detail of ever fewer surfels, of which the first has this level of detail, px.
     fn of_lods(first: f64) -> Workload {
-        let level = |step: i32| if step == 0 { 0.0 } else { first * 1.26f64.powi(step - 1) };
+        let level = |step: i32| if step == 0 { 0.0 } else { first * 1.2f64.powi(step - 1) };
         Workload::new(8e5, (0..11).map(|step| (level(step), 4e5 / 1.6f64.powi(step))))
     }
 
@@ -303,9 +305,8 @@ mod tests {
     fn moving_frames_keep_to_the_budget_from_the_first_and_the_quality_settles() {
         for load in LOADS {
             let frames = frames(&mut started(load), |_| load, 400);
-            let coarsest = workload().qualities().next_back().unwrap();
-            for (i, (quality, time)) in frames.iter().enumerate() {
-                assert!(*time <= 90.0 || *quality == coarsest, "{:?}", &frames[..=i]);
+            for (i, (_, time)) in frames.iter().enumerate() {
+                assert!(*time <= 90.0, "{:?}", &frames[..=i]);
             }
             let changes = frames[200..].windows(2).filter(|pair| pair[0].0 != pair[1].0).count();
             assert!(changes <= 2, "{changes} changes: {:?}", &frames[200..]);
@@ -334,7 +335,7 @@ mod tests {
         assert!(frames[50].1 > 90.0, "the change of load is not predictable");
         let slow = frames[51..].iter().position(|(_, time)| *time > 90.0);
         assert_eq!(slow.map(|slow| &frames[48 + slow..52 + slow]), None);
-        assert_eq!(frames[200].0, Quality::FULL);
+        assert_eq!(frames[160].0, Quality::FULL);
     }
 
     #[test]
@@ -400,8 +401,7 @@ mod tests {
         let frames = frames(&mut started(LOADS[1]), load, 1800);
         let slow = |part: &[(Quality, f64)]| part.iter().filter(|(_, time)| *time > 90.0).count();
         let [first, last] = [slow(&frames[..300]), slow(&frames[300..])];
-        // One in 100 frames at first, one in 200 later.
-        assert!(first >= 3 && last <= 8, "{first} of 300 at first, {last} of 1500 later");
+        assert!(first > 0 && last == 0, "{first} at first, {last} later");
     }
 
     #[test]
@@ -410,12 +410,15 @@ mod tests {
             let (mut adaptive, all) = (started(load), workload().qualities().collect::<Vec<_>>());
             assert!(all.windows(2).all(|pair| pair[0].is_finer_than(pair[1])));
             for chosen in &all {
-                (adaptive.chosen, adaptive.load) = (*chosen, 100.0);
-                let next = adaptive.coarser(&workload());
-                assert!(
-                    chosen.is_finer_than(next) || Some(next) == all.last().copied(),
-                    "{chosen:?} {next:?}"
-                );
+                adaptive.chosen = *chosen;
+                for slowness in [1.0, 3.0, 100.0] {
+                    adaptive.load = slowness;
+                    let next = adaptive.coarser(&workload());
+                    let fits = |quality: &Quality| adaptive.expected(&workload(), *quality) <= TARGET;
+                    let none = !all.iter().any(|quality| chosen.is_finer_than(*quality) && fits(quality));
+                    let is_coarser = chosen.is_finer_than(next) || Some(&next) == all.last();
+                    assert!(is_coarser && (none || fits(&next)), "{chosen:?} {next:?}");
+                }
             }
         }
     }

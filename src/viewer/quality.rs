@@ -18,13 +18,13 @@ const FEWER: f64 = 0.9;
 
 /// Cost of a pixel that is filtered and whose edges are mixed, relative to that of others.
 const FILTER_COST: f64 = 1.3;
-/// Time of a frame on a computer without a GPU: a fixed part, ms.
+/// Part of a frame's time that does not depend on its quality, ms; like the next ones of a computer without a GPU.
 const FIXED: f64 = 10.0;
-/// A pixel, ms.
+/// Time of a pixel, ms.
 const PIXEL: f64 = 4e-5;
-/// A surfel, ms.
+/// Time of a surfel, ms.
 const SURFEL: f64 = 4.5e-4;
-/// A pixel of the window to which a smaller picture is scaled, ms.
+/// Time of a pixel of the window to which a smaller picture is scaled, ms.
 const SCALED: f64 = 1.7e-5;
 
 /// Resolution and level of detail of a frame, and whether its pixels are filtered.

@@ -32,7 +32,7 @@ pub struct OffscreenView {
     /// Colours of a scalar picture.
     scalar_colours: Option<ScalarColours>,
     targets: Option<Targets>,
-    painter: Painter,
+    target_renderer: TargetRenderer,
     /// Resources of frames in flight, each with the number of the last frame that may use it.
     old: Vec<(u64, DeferredResources)>,
     timestamps: Option<Timestamps>,
@@ -48,8 +48,8 @@ pub struct OffscreenView {
     device: Arc<Device>,
 }
 
-/// Draws pictures whose colours have one format.
-struct Painter {
+/// The renderer into targets of one format, with its render pass.
+struct TargetRenderer {
     renderer: Renderer,
     pass: RenderPass,
     format: vk::Format,
@@ -64,7 +64,7 @@ struct DeferredResources {
     // Views before their resources.
     _scalar_colours: Option<ScalarColours>,
     _targets: Option<Targets>,
-    _painter: Option<Painter>,
+    _target_renderer: Option<TargetRenderer>,
 }
 
 struct Targets {
@@ -83,7 +83,7 @@ impl OffscreenView {
         Ok(Self {
             scalar_colours: None,
             targets: None,
-            painter: Painter::new(device, presenter.format(), rasterizer)?,
+            target_renderer: TargetRenderer::new(device, presenter.format(), rasterizer)?,
             old: Vec::new(),
             timestamps: None,
             measured: false,
@@ -119,16 +119,16 @@ impl OffscreenView {
         self.old.retain(|(last, _)| last + u64::from(FRAMES_IN_FLIGHT) > frame.number);
         let shading = content.map(|(.., settings)| settings.shading).filter(|shading| is_scalar(*shading));
         let format = if shading.is_some() { SCALARS } else { frame.format() };
-        if self.painter.format != format {
-            let painter = Painter::new(&self.device, format, self.rasterizer)?;
+        if self.target_renderer.format != format {
+            let target_renderer = TargetRenderer::new(&self.device, format, self.rasterizer)?;
             self.defer(frame.number, true);
-            let _painter = Some(std::mem::replace(&mut self.painter, painter));
-            self.old.push((frame.number, DeferredResources { _painter, ..Default::default() }));
+            let _target_renderer = Some(std::mem::replace(&mut self.target_renderer, target_renderer));
+            self.old.push((frame.number, DeferredResources { _target_renderer, ..Default::default() }));
             self.measured = false;
         }
         if self.targets.as_ref().is_none_or(|targets| targets.colour.size() != size) {
             self.defer(frame.number, true);
-            self.targets = Some(Targets::new(&self.device, &self.painter, size)?);
+            self.targets = Some(Targets::new(&self.device, &self.target_renderer, size)?);
         }
         if self.scalar_colours.as_ref().map(|scalar_colours| scalar_colours.shading) != shading {
             self.defer(frame.number, false);
@@ -152,7 +152,8 @@ impl OffscreenView {
     fn defer(&mut self, last: u64, with_targets: bool) {
         let targets = if with_targets { self.targets.take() } else { None };
         let _scalar_colours = self.scalar_colours.take();
-        self.old.push((last, DeferredResources { _scalar_colours, _targets: targets, _painter: None }));
+        self.old
+            .push((last, DeferredResources { _scalar_colours, _targets: targets, _target_renderer: None }));
     }
 
     /// Whether there is no picture, not even a background.
@@ -188,11 +189,11 @@ impl OffscreenView {
         let mut drawn = Ok(());
         if let Some((scene, camera, settings)) = content {
             let view = View::whole(*camera, targets.colour.size());
-            self.painter.renderer.measure(Measured { times: measured, counts: measured });
+            self.target_renderer.renderer.measure(Measured { times: measured, counts: measured });
             // SAFETY: the presenter's command buffer is recording outside a render pass, and the presenter submits in order; `draw` runs
             // once per frame, so that the number of frames in flight is as stated.
             drawn = unsafe {
-                self.painter.renderer.prepare(frame.cmd, scene, &view, &before_background(settings))
+                self.target_renderer.renderer.prepare(frame.cmd, scene, &view, &before_background(settings))
             };
         }
         if measured && self.timestamps.is_none() {
@@ -211,7 +212,7 @@ impl OffscreenView {
         let draws = enc.render_over(framebuffer, behind);
         if content.is_some() && drawn.is_ok() {
             // SAFETY: inside the renderer's target.
-            drawn = unsafe { self.painter.renderer.draw(frame.cmd) };
+            drawn = unsafe { self.target_renderer.renderer.draw(frame.cmd) };
         }
         drop(draws);
         drop(enc);
@@ -263,9 +264,9 @@ impl OffscreenView {
             return Ok(None);
         }
         // SAFETY: every frame is over.
-        unsafe { self.painter.renderer.finish()? };
+        unsafe { self.target_renderer.renderer.finish()? };
         let own = self.timestamps.as_ref().map_or(Ok(Vec::new()), Timestamps::read)?;
-        let report = self.painter.renderer.report().cloned();
+        let report = self.target_renderer.renderer.report().cloned();
         Ok(report.map(|mut report| {
             // `screen` includes it.
             report.pass_times.retain(|time| time.label != "composite");
@@ -310,7 +311,7 @@ impl Drop for OffscreenView {
     }
 }
 
-impl Painter {
+impl TargetRenderer {
     fn new(device: &Arc<Device>, format: vk::Format, rasterizer: RasterizerChoice) -> Result<Self> {
         let pass = RenderPass::new(device, &[Attachment::Cleared(format)], Some(Attachment::Cleared(DEPTH)))?;
         let target = Target {
@@ -326,7 +327,7 @@ impl Painter {
             encode: false,
         };
         let options = Options { frames_in_flight: FRAMES_IN_FLIGHT, rasterizer, ..Options::new(target) };
-        // SAFETY: the target is this pass, which outlives the renderer; the view's `drop` waits for the GPU, and a replaced painter is kept until
+        // SAFETY: the target is this pass, which outlives the renderer; the view's `drop` waits for the GPU, and a replaced renderer is kept until
         // its frames are over.
         let renderer = unsafe { Renderer::new(device, options)? };
         Ok(Self { renderer, pass, format })
@@ -334,8 +335,8 @@ impl Painter {
 }
 
 impl Targets {
-    fn new(device: &Arc<Device>, painter: &Painter, size: [u32; 2]) -> Result<Self> {
-        let Painter { pass, format, .. } = painter;
+    fn new(device: &Arc<Device>, target_renderer: &TargetRenderer, size: [u32; 2]) -> Result<Self> {
+        let TargetRenderer { pass, format, .. } = target_renderer;
         let colour = Image::target(device, "screen", *format, size, ImageUse::Output)?;
         let depth = Image::target(device, "screen depth", DEPTH, size, ImageUse::Output)?;
         let pixels = u64::from(size[0]) * u64::from(size[1]);
