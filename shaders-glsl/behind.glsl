@@ -76,9 +76,14 @@ void main() {
     compute_behind(origin);
     sum_attributes(origin);
     report_incomplete();
-    for (uint r = 0; r < ROWS; r++) {
+    FOR_ROWS(r) {
         ivec2 pixel = ivec2(origin + lane_pixel(r));
-        if (depths[r] > 0.0) mix_behind(pixel, coverage_masks[r], nearest_masks[r], tile_sums0[r], tile_sums1[r]);
+        if (depths[0] > 0.0) mix_behind(pixel, coverage_masks[0], nearest_masks[0], tile_sums0[0], tile_sums1[0]);
+        ROTATE(float, depths)
+        ROTATE(uint, coverage_masks)
+        ROTATE(uint, nearest_masks)
+        ROTATE(vec4, tile_sums0)
+        ROTATE(vec4, tile_sums1)
     }
 }
 

@@ -74,11 +74,14 @@ void main() {
     }
     if (!is_last_slice()) return;
 #endif
-    for (uint r = 0; r < ROWS; r++) {
+    FOR_ROWS(r) {
         uvec2 coordinates = origin + lane_pixel(r);
-        float alpha = COVERAGE ? bitCount(coverage_masks[r]) / 16.0 : 1.0;
-        Pixel pixel = pixel_of(coordinates, depths[r] > 0.0, nearest_splats[r], alpha);
+        float alpha = COVERAGE ? bitCount(coverage_masks[0]) / 16.0 : 1.0;
+        Pixel pixel = pixel_of(coordinates, depths[0] > 0.0, nearest_splats[0], alpha);
         if (is_in_viewport(coordinates)) store_pixel(ivec2(coordinates), pixel);
+        ROTATE(float, depths)
+        ROTATE(uint, nearest_splats)
+        if (COVERAGE) ROTATE(uint, coverage_masks)
     }
 }
 

@@ -65,11 +65,15 @@ void main() {
     if (MIXED) store_edges(origin);
     sum_attributes(origin);
     report_incomplete();
-    for (uint r = 0; r < ROWS; r++) {
+    FOR_ROWS(r) {
         uvec2 pixel = origin + lane_pixel(r);
-        float alpha = COVERAGE ? bitCount(coverage_masks[r]) / 16.0 : 1.0;
-        Pixel result = normalize_pixel(vec2(pixel) + 0.5, depths[r] > 0.0, alpha, tile_sums0[r], tile_sums1[r]);
+        float alpha = COVERAGE ? bitCount(coverage_masks[0]) / 16.0 : 1.0;
+        Pixel result = normalize_pixel(vec2(pixel) + 0.5, depths[0] > 0.0, alpha, tile_sums0[0], tile_sums1[0]);
         if (is_in_viewport(pixel)) store_pixel(ivec2(pixel), result);
+        ROTATE(float, depths)
+        ROTATE(vec4, tile_sums0)
+        ROTATE(vec4, tile_sums1)
+        if (COVERAGE) ROTATE(uint, coverage_masks)
     }
 }
 

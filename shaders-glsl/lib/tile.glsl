@@ -37,6 +37,18 @@ bool is_last_slice() {
 const uint ROWS = TILE * TILE / LANES;
 const uint ROW_STEP = LANES / TILE;
 
+// Loop over the lane's pixels for code that runs once a tile: unrolled ROWS times, it would take most of the time of compiling a pass. Such a
+// loop reads and writes values of row 0 and rotates them, since dynamic indexing is slow.
+#define FOR_ROWS(R) [[dont_unroll]] for (uint R = 0; R < ROWS; R++)
+
+// Moves the values of each row to the row before, those of row 0 to the last one.
+#define ROTATE(TYPE, VALUES)                                                                                               \
+    {                                                                                                                      \
+        TYPE of_first = VALUES[0];                                                                                         \
+        for (uint i = 1; i < ROWS; i++) VALUES[i - 1] = VALUES[i];                                                         \
+        VALUES[ROWS - 1] = of_first;                                                                                       \
+    }
+
 // First pixel of the workgroup's tile: even rows of tiles first, then odd ones, so that devices that split dispatches into halves balance
 // the load.
 uvec2 tile_origin() {
@@ -184,16 +196,25 @@ bool tile_fragment(TileSplat splat, vec2 d, out vec2 m, out float key, out float
 
 // lavapipe stops all loops of an invocation after 65,535 iterations in total (LP_MAX_TGSI_LOOP_ITERATIONS), which would leave holes: each
 // walk stops earlier, after its share. A walk visits some 30,000 visible splats per tile and dispatch; frames that may have more are
-// SLICED.
+// SLICED. Loops within a step of a walk are unrolled, by [[unroll]] where the compiler would find them too long.
 
 // Whether a walk stopped before it had visited all splats.
 bool incomplete = false;
 
 layout(set = 1, binding = 4, std430) writeonly buffer IncompleteFrame { uint incomplete_frame; };
 
+// Whether all loops have been stopped: then a loop of two iterations ends after the first.
+bool loops_are_stopped() {
+    uint iterations = 0;
+    [[dont_unroll]] do {
+        iterations++;
+    } while (iterations < 2);
+    return iterations < 2;
+}
+
 // Writes the number of the frame if the tile lacks splats.
 void report_incomplete() {
-    if (incomplete && lane == 0) incomplete_frame = hierarchy.frame_number;
+    if ((incomplete || loops_are_stopped()) && lane == 0) incomplete_frame = hierarchy.frame_number;
 }
 
 // Splats of a batch that are rasterized by unrolled code; a divisor of the least LANES.

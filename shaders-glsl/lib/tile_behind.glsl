@@ -22,7 +22,7 @@ void update_behind_cull_key() {
 // Columns of a word of free samples of which a splat covers one at its `fragments`; adds to `any` the columns of which it covers samples.
 uint free_columns(TileSplat solid, Turn turn, float y, uint fragments, const uint word, inout uint any) {
     uint free = 0;
-    for (uint j = 0; j < LANE_SAMPLES - 4 * word && j < 4; j++) {
+    [[unroll]] for (uint j = 0; j < LANE_SAMPLES - 4 * word && j < 4; j++) {
         uint k = lane / TILE * LANE_SAMPLES + 4 * word + j;
         uint columns = sample_columns(solid, turn, vec2(0.0, y) + sample_position(k));
         any |= columns;

@@ -74,6 +74,11 @@ uint spread(uint bits) {
     return bits & 1u | (bits & 2u) << 7 | (bits & 4u) << 14 | (bits & 8u) << 21;
 }
 
+// The lowest bits of four bytes as four bits.
+uint gather(uint bits) {
+    return (bits & 0x1010101u) * 0x1020408u >> 24 & 0xfu;
+}
+
 // Whether a splat may cover samples of incomplete pixels: its centre relative to the tile, and half its width and height, px.
 bool reaches_incomplete_pixels(vec2 centre, vec2 reach) {
     uint columns = column_mask(centre.x - reach.x, centre.x + reach.x), rows = column_mask(centre.y - reach.y, centre.y + reach.y);
@@ -158,7 +163,7 @@ uint sample_columns(TileSplat solid, Turn turn, vec2 d) {
 // columns of which it covers samples.
 uint add_samples(TileSplat solid, Turn turn, float y, uint fragments, uint nearest, const uint word) {
     uint any = 0, added = 0;
-    for (uint j = 0; j < LANE_SAMPLES - 4 * word && j < 4; j++) {
+    [[unroll]] for (uint j = 0; j < LANE_SAMPLES - 4 * word && j < 4; j++) {
         uint k = lane / TILE * LANE_SAMPLES + 4 * word + j;
         uint columns = sample_columns(solid, turn, vec2(0.0, y) + sample_position(k));
         any |= columns;
@@ -281,9 +286,11 @@ void add_coverage_batch(uint count, uint id, uvec2 origin) {
 uint mask_of_pixel(const uint row_samples[SAMPLE_WORDS], uint row) {
     uvec2 pixel = lane_pixel(row);
     uint mask = 0;
-    for (uint k = 0; k < SAMPLES; k++) {
-        uint word = shuffle(row_samples[k % LANE_SAMPLES / 4], pixel.y + TILE * (k / LANE_SAMPLES));
-        mask |= (word >> 8 * (k % LANE_SAMPLES % 4) + pixel.x & 1u) << k;
+    for (uint first = 0; first < SAMPLES; first += LANE_SAMPLES) {
+        for (uint w = 0; w < SAMPLE_WORDS; w++) {
+            uint word = shuffle(row_samples[w], pixel.y + TILE * (first / LANE_SAMPLES));
+            mask |= gather(word >> pixel.x) << first + 4 * w;
+        }
     }
     return mask;
 }

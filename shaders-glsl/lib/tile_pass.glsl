@@ -3,6 +3,7 @@
 
 #ifdef COMPUTE
 #define TILE_PASS
+#extension GL_EXT_control_flow_attributes : require
 #ifdef SUBGROUPS_SLICES
 #define SUBGROUPS
 #define SLICES

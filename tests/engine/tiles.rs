@@ -1,7 +1,7 @@
 //! Tiles: workgroups of every kind, crowded tiles, dense spots and split passes render the same picture.
 
 use crate::frames::{SIZE, agrees, all_outputs, camera, largest_difference, sphere};
-use crate::support::gpu::{assert_silent, device, render};
+use crate::support::gpu::{Renderers, assert_silent, device, render};
 use crate::support::if_whole;
 use crate::support::settings::splats_alone;
 use glam::{DMat2, Vec3};
@@ -217,6 +217,29 @@ fn crowded_tiles_show_all_splats() {
             assert!(raster.colour.iter().filter(|colour| colour[3] > 0.0).count() > 50, "{name}");
             let difference = largest_difference(&raster, &compute);
             assert!(difference < 1e-4, "{name}, {alpha:?}: {difference}");
+        }
+    }
+    assert_silent(&device);
+}
+
+/// Whatever the shape of their splats: lavapipe stops loops, and tiles would be empty.
+#[test]
+fn small_pictures_of_dense_scenes_are_whole_by_every_method() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let (scene, size) = (Scene::upload(&device, &sphere(200_000)).unwrap(), [96; 2]);
+    let renderers = Renderers::new(&device);
+    for (i, method) in Method::SPLATTING.into_iter().enumerate() {
+        let cull = [Cull::None, Cull::Auto];
+        for cull in cull.into_iter().skip(if_whole(0, i % 2)).step_by(if_whole(1, 2)) {
+            let settings =
+                Settings { cull, alpha: Alpha::Coverage, edges: Edges::Nearest, ..method.settings() };
+            let [raster, compute] = [Rasterizer::Draw, Rasterizer::Compute].map(|rasterizer| {
+                let options = RenderOptions { size, ..all_outputs(rasterizer) };
+                renderers.render_instances(&scene, &camera(size), &settings, options).0
+            });
+            assert!(raster.colour.iter().filter(|colour| colour[3] > 0.0).count() > 2_000, "{}", method.name);
+            let difference = largest_difference(&raster, &compute);
+            assert!(difference < 1e-4, "{}, {cull:?}: {difference}", method.name);
         }
     }
     assert_silent(&device);
