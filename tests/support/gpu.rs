@@ -1,29 +1,23 @@
 //! A device under validation, for tests that need one.
 
 use std::cell::RefCell;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, OnceLock};
 use surfel::geometry::{Camera, Parts};
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
 use surfel::{FrameReport, Instances, Picture, RenderOptions, Renderer, Scene, Settings};
 
 /// A device under validation, less what `limits` hide; `None`, said aloud, where there is none. With `SURFEL_REQUIRE_GPU` set, the lack of one
-/// is a failure. Without limits it is one that an earlier test has left, if there is any, with the pipelines that it has made.
+/// is a failure. Without limits all tests share one device with the pipelines that they make, and its validation messages.
 pub fn device(limits: DeviceLimits) -> Option<Arc<Device>> {
-    static LEFT: Mutex<Vec<Arc<Device>>> = Mutex::new(Vec::new());
-    if limits != DeviceLimits::default() {
-        return new_device(limits);
+    static SHARED: OnceLock<Option<Arc<Device>>> = OnceLock::new();
+    if limits == DeviceLimits::default() {
+        SHARED.get_or_init(|| new_device(limits)).clone()
+    } else {
+        new_device(limits)
     }
-    let mut left = LEFT.lock().unwrap_or_else(PoisonError::into_inner);
-    // A test at a time, as a queue works for one at a time.
-    if let Some(device) = left.iter().find(|device| Arc::strong_count(device) == 1) {
-        return Some(device.clone());
-    }
-    let device = new_device(limits)?;
-    left.push(device.clone());
-    Some(device)
 }
 
-/// As [`device`], but a new one, for tests that count pipelines.
+/// As [`device`], but a new one, for tests that count what is allocated or made.
 pub fn new_device(limits: DeviceLimits) -> Option<Arc<Device>> {
     match Device::open(&DeviceOptions { validate: true, limits, ..Default::default() }) {
         Ok(device) => Some(device),
