@@ -211,14 +211,19 @@ fn a_level_of_two_pixels_loses_half_a_decibel_at_most() {
         truth::render(subject.surface().unwrap(), &camera, &settings, size, &exact, &()).unwrap().picture;
     println!("{points} points at {}²: dB against the exact picture, splats per px", size[0]);
     println!("| method | all points | 1 px | 2 px | 4 px |");
-    for (method, most) in [(perspective_ewa::METHOD, 0.5), (confetti::METHOD, 0.7), (pull_push::METHOD, 0.0)]
-    {
+    // Confetti's picture of all points is the sharpest, and at 2 px it loses more of that, but stays better than EWA's.
+    let losses = [
+        (perspective_ewa::METHOD, [0.5, 0.5]),
+        (confetti::METHOD, [0.5, 0.7]),
+        (pull_push::METHOD, [0.0, 0.0]),
+    ];
+    for (method, most) in losses {
         let of = |lod| quality(&device, &levels, &method, lod, &exact, &camera);
         let [all, one, two, four] = [0.0, 1.0, 2.0, 4.0].map(of);
         let cell = |(db, splats): (f64, f64)| format!("{db:.2} ({splats:.2})");
         println!("| {} | {} |", method.name, [all, one, two, four].map(cell).join(" | "));
         assert!(
-            one.0 >= all.0 - most && two.0 >= all.0 - most,
+            one.0 >= all.0 - most[0] && two.0 >= all.0 - most[1],
             "{}: {} {} {}",
             method.name,
             all.0,
