@@ -7,6 +7,7 @@
 
 #ifdef COMPUTE
 
+#define FRONT_TILES
 #define VISIBILITY_ACCESS
 #include "lib/frame.glsl"
 #include "lib/picture_pixel.glsl"
@@ -56,12 +57,12 @@ void store_key(uvec2 origin) {
 
 void main() {
     load_frame();
-    uvec2 origin = HAS_FRONTS ? LISTED_ORIGIN(open) : tile_origin();
+    uvec2 origin = has_fronts() ? LISTED_ORIGIN(open) : tile_origin();
     if (has_depths()) load_depths(origin);
     compute_visibility(origin);
-    if (FRONTS || MIXED) store_depths(origin);
+    if (MIXED || is_of_fronts()) store_depths(origin);
     if (COVERAGE) compute_coverage(origin);
-    if (FRONTS) store_key(origin);
+    if (is_of_fronts()) store_key(origin);
     if (MIXED) store_edges(origin);
     sum_attributes(origin);
     report_incomplete();

@@ -17,6 +17,7 @@
 
 #ifdef COMPUTE
 
+#define FRONT_TILES
 #define VISIBILITY_ACCESS
 #define VISIBILITY_STEPS 31000
 #define COVERAGE_STEPS 31000
@@ -35,17 +36,17 @@ void main() {
         uvec2 pixel = origin + lane_pixel(r);
         uint index = is_in_viewport(pixel) ? pixel_index(ivec2(pixel)) : 0;
         if (has_depths()) load_depth(r, visibility[index]);
-        if (is_resumed() && COVERAGE && !FRONTS) coverage_masks[r] = coverage[index];
+        if (is_resumed() && COVERAGE && !is_of_fronts()) coverage_masks[r] = coverage[index];
     }
     compute_visibility(origin);
-    if (COVERAGE && !FRONTS) compute_coverage(origin);
+    if (COVERAGE && !is_of_fronts()) compute_coverage(origin);
     report_incomplete();
     for (uint r = 0; r < ROWS; r++) {
         uvec2 pixel = origin + lane_pixel(r);
         if (!is_in_viewport(pixel)) continue;
         uint index = pixel_index(ivec2(pixel));
         visibility[index] = depth_bits(r);
-        if (COVERAGE && !FRONTS) coverage[index] = coverage_masks[r];
+        if (COVERAGE && !is_of_fronts()) coverage[index] = coverage_masks[r];
     }
 }
 

@@ -1,4 +1,5 @@
 // Tiles: TILE × TILE px that a workgroup rasterizes splats to. Each lane owns pixels of one column, ROW_STEP apart, in registers.
+// Passes that have a dispatch before pass sides define FRONT_TILES.
 
 #define BOX_ACCESS readonly
 #include "lib/box.glsl"
@@ -17,17 +18,31 @@ layout(push_constant) uniform Hierarchy {
     uint slices;
     uint most_steps; // of a walk
     uint frame_number;
+    uint fronts; // 1: only splats that face the eye, before pass sides
 } hierarchy;
 
 layout(constant_id = 31) const bool COVERAGE = false; // α is the covered part of a pixel
 layout(constant_id = 47) const bool SLICED = false;
-layout(constant_id = 68) const bool CULL_AUTO = false; // pass sides has culled some splats that face away
 layout(constant_id = 72) const bool MIXED = false; // pixels at edges show the surface behind, too
-layout(constant_id = 69) const bool FRONTS = false; // only splats that face the eye: the pass before sides
+#ifdef FRONT_TILES
+layout(constant_id = 68) const bool CULL_AUTO = false; // pass sides culls some splats that face away
+#else
+const bool CULL_AUTO = false;
+#endif
 
 // Whether this dispatch resumes the state of the previous slice, and whether no further slice follows.
 bool is_resumed() {
     return SLICED && hierarchy.slice > 0;
+}
+
+// Whether this dispatch, the one before pass sides, draws only splats that face the eye.
+bool is_of_fronts() {
+    return CULL_AUTO && hierarchy.fronts != 0;
+}
+
+// Whether the depths of the splats that face the eye are known: others are to be added.
+bool has_fronts() {
+    return CULL_AUTO && hierarchy.fronts == 0;
 }
 
 bool is_last_slice() {

@@ -4,13 +4,6 @@
 uint nearest_splats[ROWS]; // id of the nearest splat
 #endif
 
-#ifdef NEAREST_SPLAT
-const bool HAS_FRONTS = false;
-#else
-// The depths of the splats that face the eye are known: others are to be added.
-const bool HAS_FRONTS = CULL_AUTO && !FRONTS;
-#endif
-
 // COVERAGE: the lane's pixels that lie within the solid part of a disc, of which all samples are covered; a bit each. MIXED: within one of
 // the nearest surface.
 uint full_pixels = 0;
@@ -19,7 +12,7 @@ float full_keys[ROWS];
 
 // Whether depths are those of a dispatch before: of the previous slice, or of the splats that face the eye, before sides.
 bool has_depths() {
-    return is_resumed() || HAS_FRONTS;
+    return is_resumed() || has_fronts();
 }
 
 #ifndef NEAREST_SPLAT
@@ -32,7 +25,7 @@ void load_depth(uint row, uint bits) {
 
 // Bits of the depth of the lane's pixel `row`, and of the splats that face the eye whether the pixel is full.
 uint depth_bits(uint row) {
-    return floatBitsToUint(depths[row]) | (FRONTS && (full_pixels >> row & 1u) != 0 ? FULL_PIXEL : 0);
+    return floatBitsToUint(depths[row]) | (is_of_fronts() && (full_pixels >> row & 1u) != 0 ? FULL_PIXEL : 0);
 }
 #endif
 
@@ -91,8 +84,8 @@ void add_visibility_batch(uint count, uint id, uvec2 origin) {
     vec2 limits = vec2(splat.key_disc, splat.epsilon), lane_full = vec2(0.0);
     if (COVERAGE) lane_full = full_limits(splat, variance_of(splat), variance, clip_of(id));
     // Unrolled: loop iterations are limited on lavapipe, and a single splat leaves it idle.
-    if (HAS_FRONTS && LANES <= 32) {
-        uint remaining = workgroup_ballot(lane < count && is_back(splat));
+    if (CULL_AUTO && LANES <= 32) {
+        uint remaining = workgroup_ballot(lane < count && (is_of_fronts() || is_back(splat)));
         do {
             for (uint k = 0; k < UNROLLED; k++) {
                 add_visibility_of(uint(max(findLSB(remaining), 0)), lane_splat, limits, lane_full, id, remaining != 0);

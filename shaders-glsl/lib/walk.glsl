@@ -90,7 +90,7 @@ void WALK(uvec2 origin, uvec2 last, uint first, uint end, bool more) {
                 uint start = is_leaf ? 0 : nodes_start;
                 Box box = load_box(start + FAN_OUT * node + lane % FAN_OUT);
                 bool hit = open_nodes != 0 && overlaps(box, origin, last) && nearest_key(box) > WALK_CULL_KEY && lane < FAN_OUT;
-                hit = hit && !(FRONTS && is_leaf && is_back(box));
+                hit = hit && !(is_of_fronts() && is_leaf && is_back(box));
                 uint hits = workgroup_ballot(hit);
                 open_nodes &= ~(1u << bit);
                 parent = is_leaf ? parent : node;

@@ -129,6 +129,8 @@ pub enum Domain {
     Blocks,
     /// One workgroup per tile.
     Tiles,
+    /// One workgroup per tile, for the splats that face the eye.
+    FrontTiles,
     /// One invocation per tile.
     TileSlots,
     /// One workgroup per tile, with all splats in one dispatch.
@@ -187,6 +189,7 @@ impl Domain {
             Self::Pixels
             | Self::Blocks
             | Self::Tiles
+            | Self::FrontTiles
             | Self::WholeTiles
             | Self::TileSlots
             | Self::OpenTiles

@@ -8,6 +8,7 @@ use super::targets::RenderTargets;
 use super::variant::{SceneVariant, Variant};
 use crate::scene::CLUSTER;
 use crate::vk::shaders::Module;
+use crate::vk::shaders::layout::Hierarchy;
 use crate::vk::{
     Access, Buffer, ComputePipeline, DescriptorSet, DrawPipeline, Draws, Encoder, Framebuffer, Recorder, Use,
 };
@@ -123,7 +124,8 @@ impl PreparedPass {
     /// Number of dispatches over tiles, each with a slice of the splats; 1 for other passes.
     fn slices(&self, frame: &Frame<'_>) -> u32 {
         let pipelines = self.pipelines.first().map_or(&[][..], |pipelines| pipelines);
-        let over_tiles = pipelines.iter().any(|(domain, _)| *domain == Domain::Tiles);
+        let over_tiles =
+            pipelines.iter().any(|(domain, _)| [Domain::Tiles, Domain::FrontTiles].contains(domain));
         match frame.splats {
             Some(splats) if over_tiles && frame.variant.sliced => splats.slices(frame.splat_count),
             _ => 1,
@@ -165,10 +167,12 @@ impl PreparedPass {
             let Some(run) = run else {
                 let sets = sets_with(frame.view, pyramid);
                 match (domain, frame.splats) {
-                    (Domain::Tiles, Some(splats)) => {
+                    (Domain::Tiles | Domain::FrontTiles, Some(splats)) => {
                         let [columns, rows] = frame.targets.tiles();
                         let slices = [slice, self.slices(frame)];
+                        let fronts = u32::from(domain == Domain::FrontTiles);
                         let hierarchy = splats.hierarchy(slices, frame.most_steps(), frame.number);
+                        let hierarchy = Hierarchy { fronts, ..hierarchy };
                         enc.dispatch(pipeline, &sets, &hierarchy, [columns, rows, 1]);
                     }
                     (Domain::WholeTiles, Some(splats)) => {

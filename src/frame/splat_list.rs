@@ -240,6 +240,7 @@ impl SplatList {
             slices,
             most_steps,
             frame_number,
+            fronts: 0,
         }
     }
 

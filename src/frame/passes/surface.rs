@@ -30,7 +30,8 @@ pub static FRONTS: Pass = Pass {
     writes: WRITES,
     clears: &[OpenTiles, EdgeTiles],
     programs: Programs::OfFrame(|variant| {
-        programs(variant).into_iter().map(|program| program.with(constant::FRONTS, true)).collect()
+        let programs = programs(variant).into_iter();
+        programs.map(|program| Program { domain: Domain::FrontTiles, ..program }).collect()
     }),
     commands: Commands::Dispatches,
 };

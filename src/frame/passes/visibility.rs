@@ -29,8 +29,8 @@ pub static COMPUTE_FRONTS: Pass = Pass {
     writes: &[Visibility, Coverage, IncompleteFrame],
     clears: &[],
     programs: Programs::OfFrame(|variant| {
-        let programs = tiles(variant, [&VISIBILITY_COMPUTE, &VISIBILITY_SUBGROUPS_COMPUTE]);
-        programs.into_iter().map(|program| program.with(constant::FRONTS, true)).collect()
+        let programs = tiles(variant, [&VISIBILITY_COMPUTE, &VISIBILITY_SUBGROUPS_COMPUTE]).into_iter();
+        programs.map(|program| Program { domain: Domain::FrontTiles, ..program }).collect()
     }),
     commands: Commands::Dispatches,
 };
