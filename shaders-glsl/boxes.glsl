@@ -1,7 +1,9 @@
-// Boxes: builds a level of the box hierarchy above the splats; a node bounds eight siblings, which Morton order keeps close together.
+// Boxes: builds the levels of the box hierarchy above the splats; a node bounds eight siblings, which Morton order keeps close together.
+// The first dispatch builds the levels up to that of clusters, below those that are not culled; the others build one level each.
 #version 450
 #pragma variant SUBGROUPS COMPUTE
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 
 #ifdef COMPUTE
@@ -15,38 +17,66 @@ layout(set = 1, binding = 6, std430) writeonly buffer Boxes { Box boxes[]; };
 
 layout(local_size_x = 64) in;
 
+// Boxes of this level, padded to a multiple of FAN_OUT, one per invocation. Levels that are written start in the bound range.
 layout(push_constant) uniform Level {
-    uint finer_start; // first box of the finer level
-    uint start;       // first box of this level in the bound range
-    uint count;       // boxes of this level, padded to a multiple of FAN_OUT
-    uint finer_count; // boxes of the finer level
+    uint finer_start; // first box of the finer level that is read
+    uint finer_count; // its boxes
+    uint start;       // first box of this level
+    uint count;       // its boxes
     uint number;      // of this level, from 0 for splats
-    uint clusters;    // first box of the level of clusters
+    uint loaded;      // level of clusters: its first box in the range that is read
+    uint nodes;       // level of clusters: first box of the level below, which is written, too
     uint fronts;      // 1: without splats that face away
 } level;
 
-// Whether the node is that of a culled cluster or below one. Padding has no cluster.
-bool is_culled(uint i) {
-    if (!CLUSTERS || level.number > CLUSTER_LEVEL || FAN_OUT * i >= level.finer_count) return false;
-    uint cluster = i >> (level.number == CLUSTER_LEVEL ? 0 : 3);
-    return load_box(level.clusters + cluster).w == CULLED_CLUSTER;
+// Corners of boxes, and the bits of their nearest κ.
+struct Bounds {
+    uvec4 corners;
+    uint nearest;
+};
+
+const Bounds EMPTY = Bounds(uvec4(0xffff, 0xffff, 0, 0), 0);
+
+Bounds join(Bounds a, Bounds b) {
+    uvec4 all = uvec4(min(a.corners.xy, b.corners.xy), max(a.corners.zw, b.corners.zw));
+    return Bounds(all, max(a.nearest, b.nearest));
+}
+
+Box box_of(Bounds bounds) {
+    uvec4 at = bounds.corners;
+    return Box(at.x | at.y << 16, at.z | at.w << 16, bounds.nearest, NO_CLIP);
+}
+
+// Bounds of the siblings from `first` on in the finer level.
+Bounds bounds_of_siblings(uint first) {
+    Bounds all = EMPTY;
+    for (uint k = 0; k < FAN_OUT; k++) {
+        uint i = first + k;
+        Box box = i < level.finer_count ? load_box(level.finer_start + i) : EMPTY_BOX;
+        if (level.fronts != 0 && is_back(box)) box = EMPTY_BOX;
+        all = join(all, Bounds(corners(box), box.z));
+    }
+    return all;
 }
 
 void main() {
     uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    if (i >= level.count || is_culled(i)) return;
-    uvec4 bounds = uvec4(0xffff, 0xffff, 0, 0);
-    uint nearest = 0;
-    for (uint k = 0; k < FAN_OUT; k++) {
-        uint child = FAN_OUT * i + k;
-        Box box = child < level.finer_count ? load_box(level.finer_start + child) : EMPTY_BOX;
-        if (level.fronts != 0 && is_back(box)) box = EMPTY_BOX;
-        uvec4 own = corners(box);
-        bounds.xy = min(bounds.xy, own.xy);
-        bounds.zw = max(bounds.zw, own.zw);
-        nearest = max(nearest, box.z);
+    if (i >= level.count) return;
+    if (level.number != CLUSTER_LEVEL) {
+        boxes[level.start + i] = box_of(bounds_of_siblings(FAN_OUT * i));
+        return;
     }
-    boxes[level.start + i] = Box(bounds.x | bounds.y << 16, bounds.z | bounds.w << 16, nearest, NO_CLIP);
+    // Padding has no cluster.
+    bool exists = CLUSTER_SIZE * i < level.finer_count;
+    bool is_culled = CLUSTERS && exists && load_box(level.loaded + i).w == CULLED_CLUSTER;
+    Bounds all = EMPTY;
+    uint end = exists && !is_culled ? FAN_OUT * (i + 1) : 0;
+    [[dont_unroll]] for (uint node = FAN_OUT * i; node < end; node++) {
+        Bounds bounds = bounds_of_siblings(FAN_OUT * node);
+        boxes[level.nodes + node] = box_of(bounds);
+        all = join(all, bounds);
+    }
+    if (!is_culled) boxes[level.start + i] = box_of(all);
 }
 
 #endif

@@ -2017,33 +2017,36 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(IncompleteFrame, incomplete_frame) == 0);
     const _: () = assert!(std::mem::size_of::<IncompleteFrame>() == 4);
 
-    /// `Level`, 28 bytes, first in `shaders-glsl/boxes.glsl`.
+    /// `Level`, 32 bytes, first in `shaders-glsl/boxes.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Level {
         /// Byte 0.
         pub finer_start: u32,
         /// Byte 4.
-        pub start: u32,
-        /// Byte 8.
-        pub count: u32,
-        /// Byte 12.
         pub finer_count: u32,
+        /// Byte 8.
+        pub start: u32,
+        /// Byte 12.
+        pub count: u32,
         /// Byte 16.
         pub number: u32,
         /// Byte 20.
-        pub clusters: u32,
+        pub loaded: u32,
         /// Byte 24.
+        pub nodes: u32,
+        /// Byte 28.
         pub fronts: u32,
     }
     const _: () = assert!(std::mem::offset_of!(Level, finer_start) == 0);
-    const _: () = assert!(std::mem::offset_of!(Level, start) == 4);
-    const _: () = assert!(std::mem::offset_of!(Level, count) == 8);
-    const _: () = assert!(std::mem::offset_of!(Level, finer_count) == 12);
+    const _: () = assert!(std::mem::offset_of!(Level, finer_count) == 4);
+    const _: () = assert!(std::mem::offset_of!(Level, start) == 8);
+    const _: () = assert!(std::mem::offset_of!(Level, count) == 12);
     const _: () = assert!(std::mem::offset_of!(Level, number) == 16);
-    const _: () = assert!(std::mem::offset_of!(Level, clusters) == 20);
-    const _: () = assert!(std::mem::offset_of!(Level, fronts) == 24);
-    const _: () = assert!(std::mem::size_of::<Level>() == 28);
+    const _: () = assert!(std::mem::offset_of!(Level, loaded) == 20);
+    const _: () = assert!(std::mem::offset_of!(Level, nodes) == 24);
+    const _: () = assert!(std::mem::offset_of!(Level, fronts) == 28);
+    const _: () = assert!(std::mem::size_of::<Level>() == 32);
 
     /// `ListedTile`, 8 bytes, first in `shaders-glsl/behind.glsl`.
     #[repr(C)]

@@ -263,21 +263,24 @@ impl SplatList {
         Ok(nodes.take(self.levels[CLUSTERS].boxes as usize).map(|node| node[3] == CULLED_CLUSTER).collect())
     }
 
-    /// Push constants that build the levels above so many splats, fine to coarse.
+    /// Push constants that build the levels above so many splats, fine to coarse: the first ones together.
     pub fn steps(&self, splats: u64) -> impl Iterator<Item = Level> {
         let written = self.written();
-        let clusters = self.levels[CLUSTERS].start as u32;
         // Nodes above the padding of a long list are neither built nor read.
         let mut finer = splats;
-        self.levels.windows(2).zip(1..).map(move |(pair, number)| {
-            let nodes = finer.div_ceil(FAN_OUT).max(1).next_multiple_of(FAN_OUT);
+        (CLUSTERS..self.levels.len()).map(move |number| {
+            let first = number == CLUSTERS;
+            let children = if first { CLUSTER } else { FAN_OUT };
+            let nodes = finer.div_ceil(children).max(1).next_multiple_of(FAN_OUT);
+            let finer_level = &self.levels[if first { 0 } else { number - 1 }];
             let step = Level {
-                finer_start: pair[0].start as u32,
-                start: (pair[1].start - written) as u32,
-                count: nodes as u32,
+                finer_start: finer_level.start as u32,
                 finer_count: finer as u32,
-                number,
-                clusters,
+                start: (self.levels[number].start - written) as u32,
+                count: nodes as u32,
+                number: number as u32,
+                loaded: self.levels[number].start as u32,
+                nodes: (self.levels[number - 1].start - written) as u32,
                 fronts: 0,
             };
             finer = nodes;

@@ -18,7 +18,7 @@ pub static FRONTS: Pass = Pass {
     commands: Commands::Steps(|steps, rec| record(steps, rec, 1)),
 };
 
-/// One dispatch per level, one invocation per node.
+/// One dispatch for the levels up to clusters and one per level above, one invocation per node of the highest.
 pub static BOXES: Pass = Pass {
     name: "boxes",
     reads: &[],
