@@ -213,7 +213,9 @@ fn command(args: &Bench, suites: &[Suite]) -> String {
     let named = suites.iter().filter(|suite| **suite != Suite::Inputs);
     option("suite", list(named.map(|suite| suite.name().to_owned()).collect()));
     option("scans", path(&args.scans));
-    option("minutes", args.minutes.map(|limit| format!("{}", limit.as_secs_f64() / 60.0)));
+    // Without the last bits, which are not those of what was typed.
+    let minutes = |limit: Duration| (limit.as_secs_f64() / 60.0 * 1e6).round() / 1e6;
+    option("minutes", args.minutes.map(|limit| minutes(limit).to_string()));
     option("models", path(&args.models));
     option("device", args.device.device.clone());
     option("device-limits", path(&args.device.device_limits));
