@@ -27,7 +27,10 @@ pub fn run(args: &Info) -> Result<()> {
     }
     let path = Path::new(&args.input);
     let bars = progress::bars(false);
-    let options = ReadOptions { triangles: args.points.polygons, ..Default::default() };
+    let options = ReadOptions {
+        triangles: args.points.polygons,
+        ..Default::default()
+    };
     let Inspected { format, encoding, elements, loaded } = formats::inspect(path, &options, &*bars)?;
     print(&header(path, &format!("{format}, {encoding}"), &elements))?;
     let Loaded { cloud, report } = loaded?;
@@ -82,7 +85,11 @@ fn listed(names: &[String], most: usize) -> String {
 fn properties(report: &Report) -> String {
     // Only a few properties are ever understood.
     let (understood, skipped) = (listed(&report.understood, usize::MAX), listed(&report.skipped, MOST_NAMES));
-    format!(
+    let mut text = String::new();
+    for (name, value) in &report.details {
+        let _ = writeln!(text, "{name}: {}", printable(value));
+    }
+    text + &format!(
         "understood: {understood}\nskipped: {skipped}\nskipped elements: {}\n",
         listed(&report.skipped_elements, MOST_NAMES)
     )

@@ -11,6 +11,8 @@ pub enum Encoding {
     BinaryLittleEndian,
     /// Packed big-endian binary.
     BinaryBigEndian,
+    /// Binary in fewer bits than the numbers have.
+    Compressed,
 }
 
 /// Type of a number in a record, with its PLY names.
@@ -28,6 +30,10 @@ pub enum Scalar {
     I32,
     /// `uint` or `uint32`.
     U32,
+    /// A 64-bit integer, not of PLY.
+    I64,
+    /// A 64-bit unsigned integer, not of PLY.
+    U64,
     /// `float` or `float32`.
     F32,
     /// `double` or `float64`.
@@ -75,7 +81,7 @@ impl Scalar {
             Self::I8 | Self::U8 => 1,
             Self::I16 | Self::U16 => 2,
             Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::F64 => 8,
+            Self::I64 | Self::U64 | Self::F64 => 8,
         }
     }
 
@@ -128,6 +134,7 @@ impl fmt::Display for Encoding {
             Self::Ascii => "ascii",
             Self::BinaryLittleEndian => "binary_little_endian",
             Self::BinaryBigEndian => "binary_big_endian",
+            Self::Compressed => "compressed",
         })
     }
 }
@@ -141,6 +148,8 @@ impl fmt::Display for Scalar {
             Self::U16 => "ushort",
             Self::I32 => "int",
             Self::U32 => "uint",
+            Self::I64 => "int64",
+            Self::U64 => "uint64",
             Self::F32 => "float",
             Self::F64 => "double",
         })

@@ -15,11 +15,14 @@ pub mod camera;
 pub mod colour_bar;
 pub mod declared;
 pub mod image;
+mod meter;
 pub mod ply;
+mod quoted;
 mod reader;
 mod report;
 mod sniff;
 mod source;
+mod table;
 
 pub use reader::{Inspected, Loaded, ReadOptions, extensions, inspect, read, read_bytes};
 pub use report::{Dropped, Faces, Lines, Report};

@@ -1,6 +1,7 @@
 //! Report of reading a file.
 
 use super::declared::{Element, Encoding};
+use super::table::{Layout, Points, Shape};
 
 /// Result of reading a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -8,6 +9,8 @@ use super::declared::{Element, Encoding};
 pub struct Report {
     /// Encoding of the records.
     pub encoding: Encoding,
+    /// Facts that only this format tells, by name: its version, the coordinate system, where the points come from.
+    pub details: Vec<(String, String)>,
     /// All declared elements, in order.
     pub elements: Vec<Element>,
     /// Used vertex properties, in file order.
@@ -36,6 +39,36 @@ pub struct Report {
     pub texture_missing: Option<String>,
     /// Bytes after the last element, which are ignored.
     pub trailing: u64,
+}
+
+impl Report {
+    /// The report of a file that has points alone.
+    pub(super) fn of_points(encoding: Encoding, element: &Element, layout: &Layout, points: &Points) -> Self {
+        let names = |used: bool| {
+            let all = element.properties.iter().enumerate();
+            all.filter(|(index, _)| layout.uses(*index) == used)
+                .map(|(_, property)| property.name.clone())
+                .collect()
+        };
+        Self {
+            encoding,
+            details: Vec::new(),
+            elements: vec![element.clone()],
+            understood: names(true),
+            skipped: names(false),
+            skipped_elements: Vec::new(),
+            points: element.count,
+            dropped: points.dropped,
+            clip_lines_dropped: points.clip_lines,
+            weights_dropped: points.weights,
+            materials_dropped: 0,
+            faces: Faces::default(),
+            lines: Lines::default(),
+            gaussians: matches!(layout.shape, Shape::Gaussian(_)),
+            texture_missing: None,
+            trailing: 0,
+        }
+    }
 }
 
 /// Dropped vertices, each counted once, by the first applicable reason.

@@ -1,6 +1,6 @@
 //! Identification of unsupported files, for error messages.
 
-use super::ply::quoted;
+use super::quoted::quoted;
 
 /// First bytes of common file types, and the remedy.
 const KNOWN: &[(&[u8], &str)] = &[

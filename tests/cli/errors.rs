@@ -12,8 +12,8 @@ fn unusable_inputs_exit_with_1_at_once() {
         ("text.ply", b"hello, points\n".to_vec(), "not a PLY file"),
         ("truncated.ply", surfels(&[GOOD, GOOD]).replace("vertex 2", "vertex 3").into(), "vertex"),
         ("cut_header.ply", surfels(&[GOOD])[..40].into(), "header"),
-        ("none.ply", surfels(&[]).into(), "it has no vertices"),
-        ("nan.ply", surfels(&["nan nan nan nan nan nan nan"; 3]).into(), "none of its 3 vertices"),
+        ("none.ply", surfels(&[]).into(), "it has no points"),
+        ("nan.ply", surfels(&["nan nan nan nan nan nan nan"; 3]).into(), "none of its 3 points"),
         ("lying.ply", surfels(&[GOOD]).replace("vertex 1", "vertex 4000000000").into(), "4000000000"),
         ("bare.ply", surfels(&[GOOD]).replace("radius", "quality").into(), "give a radius"),
     ];

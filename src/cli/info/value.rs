@@ -36,7 +36,10 @@ pub(super) fn run(args: &Info) -> Result<()> {
 /// Adds the entries of a file.
 fn file(all: &mut Object, args: &Info) -> Result<()> {
     let path = Path::new(&args.input);
-    let options = ReadOptions { triangles: args.points.polygons, ..Default::default() };
+    let options = ReadOptions {
+        triangles: args.points.polygons,
+        ..Default::default()
+    };
     let Inspected { encoding, elements, loaded, .. } =
         formats::inspect(path, &options, &*progress::bars(false))?;
     all.insert("format".into(), encoding.to_string().into());
@@ -74,6 +77,7 @@ fn read(all: &mut Object, report: &Report, cloud: &Cloud) {
         "lines": { "understood": report.lines.understood, "skipped": report.lines.skipped, "sides_of_faces": report.lines.sides },
         "left_out": { "without_position": position, "transparent": transparent },
         "trailing_bytes": report.trailing,
+        "details": report.details.iter().cloned().collect::<std::collections::BTreeMap<_, _>>(),
     }) else {
         return;
     };

@@ -1,8 +1,10 @@
 //! Text records: numbers between white space, independent of line breaks.
 
+use super::Parsed;
 use super::records::Reader;
-use super::{Parsed, quoted};
 use crate::formats::declared::{Element, Kind, Scalar};
+use crate::formats::quoted::quoted;
+use crate::formats::table::text::number;
 
 /// A position in the text.
 #[derive(Clone)]
@@ -100,18 +102,6 @@ impl Reader for Tokens<'_> {
     fn trailing(&self) -> usize {
         self.rest.trim_ascii_start().len()
     }
-}
-
-/// The number of a token, including all spellings of `nan` and `inf`.
-fn number(token: &[u8]) -> Option<f64> {
-    let text = std::str::from_utf8(token).ok()?;
-    text.parse().ok().or_else(|| {
-        // Output of C libraries: nan(ind), -1.#IND, 1.#QNAN, 1.#INF. None is finite, so the point is dropped.
-        let odd = ["nan(", "-nan(", "+nan(", "1.#", "-1.#", "+1.#"];
-        odd.iter()
-            .any(|start| text.get(..start.len()).is_some_and(|text| text.eq_ignore_ascii_case(start)))
-            .then_some(f64::NAN)
-    })
 }
 
 #[cfg(test)]

@@ -1,20 +1,19 @@
 //! Reading of all elements in file order.
 
-use super::arrays::Arrays;
+use super::Parsed;
 use super::ascii::Tokens;
 use super::binary::Cursor;
-use super::convert::Tally;
 use super::header::Header;
-use super::layout::Layout;
 use super::materials::Table;
-use super::meter::Meter;
 use super::others::{OtherElements, Others};
-use super::points::Points;
 use super::records::{Reader, refuse_lie, walk};
-use super::vertices::{self, Records};
-use super::{Faces, Lines, Parsed};
+use super::vertices;
 use crate::formats::declared::{Element, Encoding};
+use crate::formats::meter::Meter;
+use crate::formats::quoted::listed;
 use crate::formats::source::Source;
+use crate::formats::table::{Arrays, Layout, Points, Records, Tally};
+use crate::formats::{Faces, Lines};
 use crate::geometry::Cloud;
 use std::borrow::Cow;
 
@@ -70,7 +69,7 @@ impl File<'_> {
             refuse_lie(vertex, vertex.least_stride(), cursor.left())?;
             let bytes = cursor.take(vertex.count * vertex.least_stride()).unwrap_or_default();
             let records = Records { source: &Source::of(bytes), start: 0, big_endian };
-            vertices::read(&records, vertex, self.layout, self.meter)
+            records.read(vertex, self.layout, self.meter)
         })
     }
 
@@ -82,7 +81,7 @@ impl File<'_> {
         self.elements(Cursor::new(&before, big_endian), |cursor| {
             let records = Records { source: self.source, start, big_endian };
             *cursor = Cursor::new(&after, big_endian);
-            vertices::read(&records, self.points(), self.layout, self.meter)
+            records.read(self.points(), self.layout, self.meter)
         })
     }
 
@@ -139,4 +138,19 @@ impl File<'_> {
         }
         Ok(Contents { points, faces, lines, materials, trailing: reader.trailing() as u64, used })
     }
+}
+
+/// Index of the element whose records are the points.
+pub(super) fn find_vertex(elements: &[Element]) -> Parsed<usize> {
+    elements.iter().position(|element| element.name == "vertex").ok_or_else(|| {
+        if elements.is_empty() {
+            "it has no elements: give a file with an element `vertex`".into()
+        } else {
+            format!(
+                "it has no element `vertex`, only {}: rename the one that holds the points",
+                listed(elements.iter().map(|element| element.name.as_str()))
+            )
+            .into()
+        }
+    })
 }

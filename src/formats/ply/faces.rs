@@ -1,7 +1,7 @@
 //! Triangles from faces and strips.
 
-use super::Faces;
-use super::points::Points;
+use crate::formats::Faces;
+use crate::formats::table::Points;
 
 /// Collects triangles between the points.
 pub(super) struct Collector<'a> {

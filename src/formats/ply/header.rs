@@ -1,7 +1,8 @@
 //! The PLY header, parsed byte by byte: comments may have any encoding, and no claim is trusted.
 
-use super::{Parsed, quoted};
+use super::Parsed;
 use crate::formats::declared::{Element, Encoding, Kind, Property, Scalar};
+use crate::formats::quoted::quoted;
 use std::collections::HashSet;
 
 /// Maximum size of a header, bytes. The longest known ones have a few hundred properties.

@@ -1,8 +1,8 @@
 //! Segments of ribbons and tubes from edges and polylines.
 
-use super::Lines;
-use super::points::Points;
+use crate::formats::Lines;
 use crate::formats::declared::{Element, Kind};
+use crate::formats::table::Points;
 use crate::geometry::Cloud;
 use glam::Vec3;
 

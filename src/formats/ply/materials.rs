@@ -1,9 +1,8 @@
 //! The element `material`: specular reflection, and colours for points without colours.
 
-use super::convert;
-use super::layout::is_colour;
 use super::lines::scalar;
 use crate::formats::declared::{Element, Kind, Scalar};
+use crate::formats::table::{is_colour, linear};
 use crate::geometry::{Cloud, Colours, Material, Materials, Surfels};
 use crate::settings::Lighting;
 
@@ -61,7 +60,7 @@ impl Colour {
     /// Linear light; NaN and negative values are 0.
     fn of_record(&self, numbers: &[f64]) -> [f32; 3] {
         let factor = self.factor.map_or(1.0, |index| numbers[index]) as f32;
-        let linear = |(index, scalar): (usize, Scalar)| convert::linear(numbers[index], scalar);
+        let linear = |(index, scalar): (usize, Scalar)| linear(numbers[index], scalar);
         let usable = |value: f32| if (0.0..=Surfels::LARGEST).contains(&value) { value } else { 0.0 };
         self.channels.map_or([1.0; 3], |channels| channels.map(linear)).map(|value| usable(factor * value))
     }

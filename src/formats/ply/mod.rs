@@ -41,25 +41,17 @@
 //! The header parser is the engine's own, because that of ply-rs aborts on large counts, merges duplicate properties, and rejects many
 //! files that programs write; ply-rs [writes](write()).
 
-mod arrays;
 mod ascii;
 mod binary;
-mod block;
-mod columns;
-mod convert;
 mod elements;
 mod faces;
 mod grid;
 mod header;
-mod layout;
 mod lines;
 mod materials;
-mod meter;
 mod others;
-mod points;
 mod records;
 mod row;
-mod shape;
 #[cfg(test)]
 mod tests;
 mod vertices;
@@ -70,15 +62,14 @@ pub use write::write;
 use crate::Progress;
 use crate::error::Cause;
 use crate::formats::declared::Encoding;
+use crate::formats::meter::Meter;
 use crate::formats::reader::{Input, Reader};
 use crate::formats::source::Parsed;
-use crate::formats::{Dropped, Faces, Inspected, Lines, Loaded, ReadOptions, Report, image, sniff};
+use crate::formats::table::{Layout, Points, columns};
+use crate::formats::{Inspected, Loaded, ReadOptions, Report, image, sniff};
 use crate::geometry::{MipMap, Texture};
 use elements::{Contents, File};
 use header::Header;
-use layout::{Layout, Shape};
-use meter::Meter;
-use points::Points;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -128,7 +119,7 @@ fn parse_records(
     progress: &dyn Progress,
 ) -> Parsed<Loaded> {
     header::refuse_duplicates(&header.elements)?;
-    let vertex = layout::find_vertex(&header.elements)?;
+    let vertex = elements::find_vertex(&header.elements)?;
     let lines = header.elements.iter().any(|element| element.count > 0 && lines::ends(element).is_some());
     let mut layout = Layout::of(&header.elements[vertex], options.scalar.as_deref(), lines)?;
     if header.elements.iter().any(|element| materials::Columns::of(element).is_some()) {
@@ -184,49 +175,14 @@ fn find_texture(
 }
 
 fn report(header: Header, vertex: usize, layout: &Layout, contents: &Contents) -> Report {
-    let properties = || header.elements[vertex].properties.iter().enumerate();
-    let names = |used: bool| {
-        properties().filter(|(index, _)| layout.uses(*index) == used).map(|(_, p)| p.name.clone()).collect()
-    };
     let skipped = header.elements.iter().zip(&contents.used).filter(|(_, used)| !**used);
     Report {
-        encoding: header.encoding,
-        understood: names(true),
-        skipped: names(false),
         skipped_elements: skipped.map(|(element, _)| element.name.clone()).collect(),
-        points: header.elements[vertex].count,
-        dropped: contents.points.dropped,
-        clip_lines_dropped: contents.points.clip_lines,
-        weights_dropped: contents.points.weights,
         materials_dropped: contents.materials.dropped(),
         faces: contents.faces,
         lines: contents.lines,
-        gaussians: matches!(layout.shape, Shape::Gaussian(_)),
-        texture_missing: None,
         trailing: contents.trailing,
-        elements: header.elements,
+        elements: header.elements.clone(),
+        ..Report::of_points(header.encoding, &header.elements[vertex], layout, &contents.points)
     }
-}
-
-/// Quoted names from a file for a message: the first few, and the number of the others.
-fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
-    const MOST: usize = 8;
-    let mut names = names.map(|name| quoted(name.as_bytes()));
-    let mut text = names.by_ref().take(MOST).collect::<Vec<_>>().join(", ");
-    match names.count() {
-        0 => {}
-        more => text += &format!(" and {more} more"),
-    }
-    text
-}
-
-/// Bytes of a file for a message: quoted, on one line, truncated.
-pub(super) fn quoted(bytes: &[u8]) -> String {
-    const LONGEST: usize = 40;
-    let mut text = bytes[..bytes.len().min(LONGEST)].escape_ascii().to_string();
-    if bytes.len() > LONGEST || text.len() > LONGEST {
-        text.truncate(LONGEST);
-        text.push('…');
-    }
-    format!("`{text}`")
 }

@@ -5,11 +5,11 @@ use super::faces::Collector;
 use super::grid::Grid;
 use super::lines::{self, Ends, Segments, TUBE};
 use super::materials::{Columns, Table};
-use super::meter::Meter;
-use super::points::Points;
 use super::records::{Reader, walk};
-use super::{Faces, Lines};
 use crate::formats::declared::{Element, Kind};
+use crate::formats::meter::Meter;
+use crate::formats::table::Points;
+use crate::formats::{Faces, Lines};
 use crate::geometry::{Cloud, View};
 use glam::{DVec3, Vec3};
 

@@ -1,9 +1,10 @@
 //! Sequential reader of records, independent of the encoding.
 
-use super::meter::Meter;
-use super::{Parsed, quoted};
+use super::Parsed;
 use crate::error::Cause;
 use crate::formats::declared::{Element, Kind, Scalar};
+use crate::formats::meter::Meter;
+use crate::formats::quoted::quoted;
 
 /// A position in the numbers of a file. A clone is a bookmark.
 pub(super) trait Reader: Clone {

@@ -1,9 +1,11 @@
 //! Records for ply-rs, which queries properties by name and type.
 
-use super::columns::{CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, MATERIAL_NAME, TANGENT_NAMES, WEIGHT_NAME};
 use super::lines::TUBE;
 use super::materials;
 use super::write::FileContents;
+use crate::formats::table::columns::{
+    CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, MATERIAL_NAME, TANGENT_NAMES, WEIGHT_NAME,
+};
 use crate::geometry::srgb;
 use crate::geometry::{Clip, Colours, Ellipse, Material, Primitives};
 use crate::settings::Lighting;

@@ -1,11 +1,13 @@
 //! PLY writer, through ply-rs: its writer is correct for binary records if the header's counts and the lists' lengths are.
 
-use super::columns::{CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, MATERIAL_NAME, TANGENT_NAMES, WEIGHT_NAME};
 use super::lines::TUBE;
 use super::materials;
 use super::row::{Line, Row, Shine, Triangle};
 use crate::error::{Error, Result};
 use crate::formats::atomic;
+use crate::formats::table::columns::{
+    CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, MATERIAL_NAME, TANGENT_NAMES, WEIGHT_NAME,
+};
 use crate::geometry::{Colours, Materials, Parts, Primitives};
 use glam::DVec3;
 use ply_rs::ply::{

@@ -8,7 +8,7 @@ mod written;
 
 use super::*;
 use crate::error::Error;
-use crate::formats::{read, read_bytes};
+use crate::formats::{Dropped, Faces, Lines, read, read_bytes};
 use crate::geometry::{Cloud, Colours, Materials};
 use glam::{DVec3, Vec3};
 use std::time::{Duration, Instant};
@@ -171,8 +171,8 @@ fn what_has_no_position_is_dropped_and_what_is_missing_is_0() {
     assert_eq!(cloud.radii, Some(vec![0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 2.0]));
     let bare = load(&ascii(1, "", "0 0 0 0 0 0 -1")).cloud;
     assert_eq!((bare.normals, bare.radii), (None, None));
-    assert!(cause(&ascii(1, "", "nan 0 0 0 0 1 1")).contains("none of its 1 vertices has a finite position"));
-    assert!(cause(&ascii(0, "", "")).contains("no vertices"));
+    assert!(cause(&ascii(1, "", "nan 0 0 0 0 1 1")).contains("none of its 1 points has a finite position"));
+    assert!(cause(&ascii(0, "", "")).contains("no points"));
 }
 
 #[test]
@@ -273,7 +273,7 @@ fn lying_counts_fail_at_once() {
             let empty = format!(
                 "ply\nformat {format} 1.0\nelement none {count}\nelement vertex 0\n{FLOATS}end_header\n"
             );
-            assert!(cause(empty.as_bytes()).contains("no vertices"));
+            assert!(cause(empty.as_bytes()).contains("no points"));
         }
         let long = format!(
             "ply\nformat {format} 1.0\nelement face 1\nproperty list uint double i\nelement vertex 1\n{FLOATS}end_header\n"

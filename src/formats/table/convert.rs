@@ -24,7 +24,7 @@ const HARMONIC: f64 = 0.282_094_791_773_878_14;
 
 /// Counts of dropped values, and whether the points are complete.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Tally {
+pub struct Tally {
     pub dropped: u64,
     pub transparent: u64,
     /// Invalid clip lines.
@@ -48,7 +48,7 @@ impl Tally {
 }
 
 /// Converts all rows of the block to consecutive entries of `out`.
-pub(super) fn convert(block: &Block, layout: &Layout, out: &mut Slices) -> Tally {
+pub fn convert(block: &Block, layout: &Layout, out: &mut Slices) -> Tally {
     let mut tally = if layout.narrow {
         positions(block, layout, out.narrow, DVec3::as_vec3, Vec3::NAN)
     } else {
@@ -204,7 +204,7 @@ fn colours(block: &Block, layout: &Layout, out: &mut Slices) {
 }
 
 /// Linear light of a channel: integers are sRGB-encoded, floats are linear. Invalid values (negative, not finite) are black.
-pub(super) fn linear(value: f64, scalar: Scalar) -> f32 {
+pub fn linear(value: f64, scalar: Scalar) -> f32 {
     let linear = match scalar {
         Scalar::U8 => srgb::decode(value / 255.0),
         Scalar::U16 => srgb::decode(value / 65535.0),

@@ -1,8 +1,8 @@
 //! Arrays of the points' attributes, filled in pieces by several threads.
 
-use super::Parsed;
 use super::columns::{CORNERS, MATERIAL, SCALAR, TANGENT, TEXTURE, WEIGHT};
 use super::layout::{Layout, Shape};
+use crate::formats::source::Parsed;
 use crate::formats::source::room;
 use crate::geometry::memory;
 use crate::geometry::{Clip, Ellipse};
@@ -12,12 +12,12 @@ macro_rules! arrays {
     ($($name:ident: $type:ty, $there:expr, $what:literal;)*) => {
         /// Arrays with one entry per vertex; empty for attributes that the file does not have.
         #[derive(Default)]
-        pub(super) struct Arrays {
+        pub struct Arrays {
             $(#[doc = $what] pub $name: Vec<$type>,)*
         }
 
         /// Consecutive entries of [`Arrays`].
-        pub(super) struct Slices<'a> {
+        pub struct Slices<'a> {
             $(#[doc = $what] pub $name: &'a mut [$type],)*
         }
 
@@ -25,7 +25,7 @@ macro_rules! arrays {
             /// Arrays of zeros. `count` is validated against the size of the file.
             pub fn new(count: u64, layout: &Layout) -> Parsed<Self> {
                 let each = 0 $(+ if $there(layout) { size_of::<$type>() as u64 } else { 0 })*;
-                memory::check(&format!("its {count} vertices"), count.saturating_mul(each))?;
+                memory::check(&format!("its {count} points"), count.saturating_mul(each))?;
                 Ok(Self { $($name: room(if $there(layout) { count } else { 0 })?,)* })
             }
 

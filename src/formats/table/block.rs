@@ -4,10 +4,10 @@ use super::columns::COLUMNS;
 use glam::DVec3;
 
 /// Maximum number of rows: few enough for the used columns to fit the cache.
-pub(super) const ROWS: usize = 512;
+pub const ROWS: usize = 512;
 
 /// Some rows of numbers; columns without a property are 0.
-pub(super) struct Block {
+pub struct Block {
     values: Vec<f64>,
     rows: usize,
 }

@@ -2,8 +2,9 @@
 
 use super::arrays::Arrays;
 use super::convert::Tally;
-use super::{Dropped, Parsed};
 use crate::error::Cause;
+use crate::formats::Dropped;
+use crate::formats::source::Parsed;
 use crate::geometry::{Clip, Clips, Cloud, Colours, Weights};
 use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
@@ -22,7 +23,7 @@ const MANY: usize = 100;
 const SAMPLE: usize = 1 << 12;
 
 /// The points of a file, before faces are read.
-pub(super) struct Points {
+pub struct Points {
     pub cloud: Cloud,
     pub dropped: Dropped,
     /// Number of vertices in the file.
@@ -47,7 +48,7 @@ const NOWHERE: u32 = u32::MAX;
 impl Points {
     pub fn new(mut arrays: Arrays, tally: Tally) -> Parsed<Self> {
         let count = arrays.narrow.len().max(arrays.wide.len());
-        let count = u32::try_from(count).map_err(|_| "more than 2³² − 1 vertices: split the file")?;
+        let count = u32::try_from(count).map_err(|_| "more than 2³² − 1 points: split the file")?;
         let dropped = Dropped { position: tally.dropped, transparent: tally.transparent };
         if dropped.total() >= u64::from(count) {
             return Err(nothing(count, dropped));
@@ -76,8 +77,8 @@ impl Points {
 
 fn nothing(count: u32, dropped: Dropped) -> Cause {
     match (count, dropped.transparent) {
-        (0, _) => "it has no vertices: give a file with at least one".into(),
-        (_, 0) => format!("none of its {count} vertices has a finite position: fetch or write it again").into(),
+        (0, _) => "it has no points: give a file with at least one".into(),
+        (_, 0) => format!("none of its {count} points has a finite position: fetch or write it again").into(),
         (_, transparent) => format!(
             "none of its {count} 3D Gaussians is left: {transparent} are less than a tenth opaque, the others have no finite position; give more opaque ones"
         )

@@ -1,8 +1,9 @@
 //! The supported vertex properties and their columns.
 
 use super::columns::*;
-use super::{Parsed, listed, quoted};
 use crate::formats::declared::{Element, Kind, Property, Scalar};
+use crate::formats::quoted::{listed, quoted};
+use crate::formats::source::Parsed;
 
 const TEXTURES: &[[&str; 2]] = &[["texture_u", "texture_v"], ["s", "t"], ["u", "v"]];
 const NORMALS: &[[&str; 3]] = &[["nx", "ny", "nz"], ["normal_x", "normal_y", "normal_z"]];
@@ -11,7 +12,7 @@ const COLOURS: &[[&str; 3]] =
 
 /// Source of a disc's shape beyond its radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Shape {
+pub enum Shape {
     /// None: a circle.
     Circle,
     /// Two semi-axes.
@@ -22,7 +23,7 @@ pub(super) enum Shape {
 
 /// Content of the colour columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Colour {
+pub enum Colour {
     /// red green blue of these types.
     Rgb([Scalar; 3]),
     /// The constant terms of spherical harmonics, as of 3D Gaussians.
@@ -31,7 +32,7 @@ pub(super) enum Colour {
 
 /// Mapping from vertex properties to surfel attributes.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Layout {
+pub struct Layout {
     /// Property index of each column.
     pub columns: [Option<usize>; COLUMNS],
     /// Source of the shape.
@@ -51,7 +52,7 @@ impl Layout {
         refuse_compressed(properties)?;
         let find = Finder { properties };
         let position =
-            find.all(["x", "y", "z"]).ok_or("its vertices have no x y z: write it again with all three")?;
+            find.all(["x", "y", "z"]).ok_or("its points have no x y z: write it again with all three")?;
         let narrow = position.iter().all(|(_, scalar)| scalar.size() <= 2 || *scalar == Scalar::F32);
         let mut layout =
             Self { columns: [None; COLUMNS], shape: Shape::Circle, colour: None, narrow, diameters: false };
@@ -201,7 +202,7 @@ impl Layout {
 }
 
 /// Whether the type has an agreed colour range: other integers do not.
-pub(super) fn is_colour(scalar: Scalar) -> bool {
+pub fn is_colour(scalar: Scalar) -> bool {
     matches!(scalar, Scalar::U8 | Scalar::U16) || scalar.is_float()
 }
 
@@ -231,7 +232,7 @@ impl Finder<'_> {
 fn no_scalar(name: &str, properties: &[Property]) -> String {
     let scalars = properties.iter().filter(|property| matches!(property.kind, Kind::Scalar(_)));
     format!(
-        "its vertices have no scalar named {}: choose one of {}",
+        "its points have no scalar named {}: choose one of {}",
         quoted(name.as_bytes()),
         listed(scalars.map(|property| property.name.as_str()))
     )
@@ -249,21 +250,6 @@ fn refuse_compressed(properties: &[Property]) -> Parsed<()> {
     } else {
         Ok(())
     }
-}
-
-/// Index of the element whose records are the points.
-pub(super) fn find_vertex(elements: &[Element]) -> Parsed<usize> {
-    elements.iter().position(|element| element.name == "vertex").ok_or_else(|| {
-        if elements.is_empty() {
-            "it has no elements: give a file with an element `vertex`".into()
-        } else {
-            format!(
-                "it has no element `vertex`, only {}: rename the one that holds the points",
-                listed(elements.iter().map(|element| element.name.as_str()))
-            )
-            .into()
-        }
-    })
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ const LEAST_ASPECT: f64 = 1e-4;
 
 /// A disc; a normal or radius of 0 is missing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Disc {
+pub struct Disc {
     pub normal: Vec3,
     pub radius: f32,
 }
@@ -20,7 +20,7 @@ pub(super) struct Disc {
 const ROUNDED: f64 = 1e-6;
 
 /// The unit vector along `n`; 0 without a direction.
-pub(super) fn unit(n: DVec3) -> Vec3 {
+pub fn unit(n: DVec3) -> Vec3 {
     let square = n.length_squared();
     // Written unit vectors are read back bit by bit.
     if (square - 1.0).abs() < ROUNDED {
@@ -35,13 +35,13 @@ pub(super) fn unit(n: DVec3) -> Vec3 {
 }
 
 /// A valid length; otherwise 0.
-pub(super) fn length(value: f64) -> f32 {
+pub fn length(value: f64) -> f32 {
     let length = value as f32;
     if length.is_finite() && length > 0.0 { length } else { 0.0 }
 }
 
 /// The disc with conjugate semi-axes `u` and `v`: its rim is `u cos φ + v sin φ`. Attributes in `given` take precedence.
-pub(super) fn of_axes(given: Disc, u: DVec3, v: DVec3) -> (Disc, Ellipse) {
+pub fn of_axes(given: Disc, u: DVec3, v: DVec3) -> (Disc, Ellipse) {
     // The principal axes, which may differ from the given ones.
     let angle = 0.5 * (2.0 * u.dot(v)).atan2(u.length_squared() - v.length_squared());
     let (sin, cos) = angle.sin_cos();
@@ -54,7 +54,7 @@ pub(super) fn of_axes(given: Disc, u: DVec3, v: DVec3) -> (Disc, Ellipse) {
 
 /// The flat side of a 3D Gaussian with the logarithms of its standard deviations and its rotation, real part first. `given` is the normal
 /// or 0; it determines the side.
-pub(super) fn of_gaussian(given: Vec3, logs: [f64; 3], [w, x, y, z]: [f64; 4]) -> (Disc, Ellipse) {
+pub fn of_gaussian(given: Vec3, logs: [f64; 3], [w, x, y, z]: [f64; 4]) -> (Disc, Ellipse) {
     let mut order = [0, 1, 2];
     order.sort_by(|&a, &b| logs[b].total_cmp(&logs[a]));
     let rotation = DQuat::from_xyzw(x, y, z, w);

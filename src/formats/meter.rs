@@ -1,7 +1,7 @@
 //! Progress of reading a file.
 
+use super::source::Parsed;
 use crate::Progress;
-use crate::formats::source::Parsed;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Sums the bytes that several threads have read.

@@ -1,51 +1,50 @@
 //! Columns of a block of vertices, and the names of properties that are written.
 
 /// Number of columns.
-pub(super) const COLUMNS: usize = SCALAR + 1;
+pub const COLUMNS: usize = SCALAR + 1;
 /// Column of x; y and z follow.
-pub(super) const POSITION: usize = 0;
+pub const POSITION: usize = 0;
 /// Column of nx; ny and nz follow.
-pub(super) const NORMAL: usize = 3;
+pub const NORMAL: usize = 3;
 /// Column of the radius.
-pub(super) const RADIUS: usize = 6;
+pub const RADIUS: usize = 6;
 /// Column of red; green and blue follow. For 3D Gaussians, of the constant harmonics f_dc_0 to 2.
-pub(super) const COLOUR: usize = 7;
+pub const COLOUR: usize = 7;
 /// Column of ux; uy uz, vx vy vz follow. For 3D Gaussians, of scale_0 to 2.
-pub(super) const AXES: usize = 10;
+pub const AXES: usize = 10;
 /// Column of two_sided.
-pub(super) const TWO_SIDED: usize = 16;
+pub const TWO_SIDED: usize = 16;
 /// Column of the opacity of a 3D Gaussian.
-pub(super) const OPACITY: usize = 17;
+pub const OPACITY: usize = 17;
 /// Column of rot_0, the real part of a 3D Gaussian's rotation; rot_1 to 3 follow.
-pub(super) const ROTATION: usize = 18;
+pub const ROTATION: usize = 18;
 /// Column of clip0x; clip0y clip0z clip0d, clip1x clip1y clip1z clip1d follow.
-pub(super) const CLIPS: usize = 22;
+pub const CLIPS: usize = 22;
 /// Column of clip_concave.
-pub(super) const CONCAVE: usize = 30;
+pub const CONCAVE: usize = 30;
 /// Column of surfel_weight.
-pub(super) const WEIGHT: usize = 31;
+pub const WEIGHT: usize = 31;
 /// Column of surfel_weight0; 1 to 3 follow.
-pub(super) const CORNERS: usize = 32;
+pub const CORNERS: usize = 32;
 /// Column of tx; ty and tz follow.
-pub(super) const TANGENT: usize = 36;
+pub const TANGENT: usize = 36;
 /// Column of u in a texture; v follows.
-pub(super) const TEXTURE: usize = 39;
+pub const TEXTURE: usize = 39;
 /// Column of material_index.
-pub(super) const MATERIAL: usize = 41;
+pub const MATERIAL: usize = 41;
 /// Column of the scalar that the caller selects.
-pub(super) const SCALAR: usize = 42;
+pub const SCALAR: usize = 42;
 
 /// Column names of two clip lines.
-pub(super) const CLIP_LINES: [[&str; 4]; 2] =
+pub const CLIP_LINES: [[&str; 4]; 2] =
     [["clip0x", "clip0y", "clip0z", "clip0d"], ["clip1x", "clip1y", "clip1z", "clip1d"]];
 /// Column name of the flag of concave corners.
-pub(super) const CLIP_CONCAVE: &str = "clip_concave";
+pub const CLIP_CONCAVE: &str = "clip_concave";
 /// Column name of normalization weights.
-pub(super) const WEIGHT_NAME: &str = "surfel_weight";
+pub const WEIGHT_NAME: &str = "surfel_weight";
 /// Column names of corner weights.
-pub(super) const CORNER_NAMES: [&str; 4] =
-    ["surfel_weight0", "surfel_weight1", "surfel_weight2", "surfel_weight3"];
+pub const CORNER_NAMES: [&str; 4] = ["surfel_weight0", "surfel_weight1", "surfel_weight2", "surfel_weight3"];
 /// Column names of tangents.
-pub(super) const TANGENT_NAMES: [&str; 3] = ["tx", "ty", "tz"];
+pub const TANGENT_NAMES: [&str; 3] = ["tx", "ty", "tz"];
 /// Column name of the material index.
-pub(super) const MATERIAL_NAME: &str = "material_index";
+pub const MATERIAL_NAME: &str = "material_index";

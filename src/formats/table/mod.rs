@@ -1,0 +1,23 @@
+//! Tables of points: named columns of numbers, which become a [`Cloud`](crate::geometry::Cloud) whatever format they come from.
+//!
+//! A format declares its columns as an [`Element`](super::declared::Element); [`Layout`] finds those that are supported, by the names of
+//! [PLY's properties](super::ply); the format [fills](fill) blocks of their numbers, which are converted to [`Arrays`] and collected as
+//! [`Points`].
+
+mod arrays;
+pub mod binary;
+mod block;
+pub mod columns;
+mod convert;
+mod fill;
+mod layout;
+mod points;
+mod shape;
+pub mod text;
+
+pub use arrays::Arrays;
+pub use block::{Block, ROWS};
+pub use convert::{Tally, convert, linear};
+pub use fill::{Records, Rows, fill};
+pub use layout::{Layout, Shape, is_colour};
+pub use points::Points;
