@@ -20,6 +20,7 @@ pub fn run(args: &Convert) -> Result<()> {
     let device = vulkan::options(&args.device)?;
     let bars = progress::bars(args.quiet);
     let options = LoadOptions {
+        columns: args.points.columns.clone(),
         estimate: args.estimate(),
         polygons: args.points.polygons,
         points: args.points.points,

@@ -28,6 +28,7 @@ pub fn run(args: &Info) -> Result<()> {
     let path = Path::new(&args.input);
     let bars = progress::bars(false);
     let options = ReadOptions {
+        columns: args.points.columns.clone(),
         triangles: args.points.polygons,
         ..Default::default()
     };

@@ -62,6 +62,7 @@ pub fn run(args: &Render) -> Result<()> {
     check_colours(args, colouring.as_ref(), &out)?;
     let bars = progress::bars(args.quiet);
     let options = LoadOptions {
+        columns: args.points.columns.clone(),
         estimate: args.points.estimate(),
         polygons: args.points.polygons,
         points: args.points.points,

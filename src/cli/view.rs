@@ -69,6 +69,7 @@ fn loader(args: &View, up: DVec3) -> Result<viewer::Load> {
         range: by.range,
     });
     let options = LoadOptions {
+        columns: args.points.columns.clone(),
         estimate: args.points.estimate(),
         polygons: args.points.polygons,
         points: args.points.points,

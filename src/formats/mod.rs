@@ -14,8 +14,14 @@ pub mod atomic;
 pub mod camera;
 pub mod colour_bar;
 pub mod declared;
+#[cfg(feature = "e57")]
+mod e57;
 pub mod image;
+#[cfg(feature = "las")]
+mod las;
 mod meter;
+#[cfg(feature = "pcd")]
+mod pcd;
 pub mod ply;
 mod quoted;
 mod reader;
@@ -23,6 +29,7 @@ mod report;
 mod sniff;
 mod source;
 mod table;
+mod text;
 
 pub use reader::{Inspected, Loaded, ReadOptions, extensions, inspect, read, read_bytes};
 pub use report::{Dropped, Faces, Lines, Report};

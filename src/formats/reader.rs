@@ -3,7 +3,7 @@
 use super::declared::{Element, Encoding};
 use super::report::Report;
 use super::source::{Parsed, Source};
-use super::{ply, sniff};
+use super::{ply, sniff, text};
 use crate::Progress;
 use crate::error::{Cause, Error, Result};
 use crate::geometry::{Cloud, MipMap};
@@ -31,7 +31,16 @@ pub(super) trait Reader: Sync {
 }
 
 /// All formats.
-static READERS: [&dyn Reader; 1] = [&ply::Ply];
+static READERS: &[&dyn Reader] = &[
+    &ply::Ply,
+    #[cfg(feature = "las")]
+    &super::las::Las,
+    #[cfg(feature = "e57")]
+    &super::e57::E57,
+    #[cfg(feature = "pcd")]
+    &super::pcd::Pcd,
+    &text::Text,
+];
 
 /// An input to read.
 pub(super) struct Input<'a> {
@@ -58,6 +67,8 @@ pub struct Loaded {
 pub struct ReadOptions {
     /// Name of the point property that becomes [`Cloud::scalar`]. A file without such a property is an error.
     pub scalar: Option<String>,
+    /// Names of the columns of a text file, in place of its own.
+    pub columns: Option<Vec<String>>,
     /// Whether triangles are kept even if every point has a normal and a radius.
     pub triangles: bool,
     /// Texture, in place of the one that the file names.
@@ -148,9 +159,9 @@ mod tests {
             reader_of(&input).map(|reader| reader.name())
         };
         assert_eq!(chosen("a.txt", b"ply\nformat ascii 1.0\n"), Ok("PLY"));
-        assert_eq!(chosen("a.PLY", b"0 1 2\n"), Ok("PLY"));
-        assert!(
-            chosen("a.xyz", b"0 1 2\n").is_err_and(|cause| cause.to_string().contains("a table of numbers"))
-        );
+        assert_eq!(chosen("a.PLY", b"0 1 2\n"), Ok("text"));
+        assert_eq!(chosen("a.PLY", b"solid\n"), Ok("PLY"));
+        assert_eq!(chosen("a.ply", b"# .PCD v0.7\n"), Ok("PCD"));
+        assert!(chosen("a.obj", b"v 0 1 2\n").is_err_and(|cause| cause.to_string().contains("OBJ")));
     }
 }

@@ -11,9 +11,9 @@ const KNOWN: &[(&[u8], &str)] = &[
     (b"\x28\xb5\x2f\xfd", "zstd-compressed: unpack it first"),
     (b"PK\x03\x04", "a zip archive: unpack it first"),
     (b"7z\xbc\xaf", "a 7z archive: unpack it first"),
-    (b"LASF", "a LAS or LAZ point cloud: convert it to PLY"),
-    (b"ASTM-E57", "an E57 point cloud: convert it to PLY"),
-    (b"# .PCD", "a PCD point cloud: convert it to PLY"),
+    (b"LASF", "a LAS or LAZ point cloud: build with the feature `las`, or convert it to PLY"),
+    (b"ASTM-E57", "an E57 point cloud: build with the feature `e57`, or convert it to PLY"),
+    (b"# .PCD", "a PCD point cloud: build with the feature `pcd`, or convert it to PLY"),
     (b"glTF", "a binary glTF model: convert it to PLY"),
     (b"DRACO", "a Draco file: convert it to PLY"),
     (b"solid", "an STL mesh: convert it to PLY with normals and radii"),
@@ -35,27 +35,30 @@ const EXTENSIONS: &[(&str, &str)] = &[
     ("sog", "3D Gaussians (.sog): convert them to PLY"),
 ];
 
-/// The error for a file that is not a PLY file: names its actual type if its beginning or extension tells.
+/// The error for a file that no reader knows: names its actual type if its beginning or extension tells.
 pub(super) fn name(file: &str, bytes: &[u8], size: u64) -> String {
     let extension = file.rsplit_once('.').map(|(_, extension)| extension.to_ascii_lowercase());
     let known = EXTENSIONS.iter().find(|(known, _)| extension.as_deref() == Some(known));
     if let Some((_, what)) = known.filter(|_| !bytes.is_empty()) {
-        return format!("not a PLY file, but {what}");
+        return format!("not a point cloud that can be read, but {what}");
     }
     if is_binary_stl(bytes, size) {
-        return "not a PLY file, but a binary STL mesh: convert it to PLY with normals and radii".into();
+        return "not a point cloud that can be read, but a binary STL mesh: convert it to PLY with normals and radii".into();
     }
     let beginning = bytes.trim_ascii_start();
     if beginning.is_empty() {
         return "the file is empty: fetch or write it again".into();
     }
     if let Some((_, what)) = KNOWN.iter().find(|(first, _)| beginning.starts_with(first)) {
-        return format!("not a PLY file, but {what}");
+        return format!("not a point cloud that can be read, but {what}");
     }
     let line = beginning.split(|byte| matches!(byte, b'\n' | b'\r')).next().unwrap_or_default();
     match text(beginning) {
-        Some(what) => format!("not a PLY file, but {what}"),
-        None => format!("not a PLY file: it begins with {} instead of `ply`; give a PLY file", quoted(line)),
+        Some(what) => format!("not a point cloud that can be read, but {what}"),
+        None => format!(
+            "not a point cloud that can be read: it begins with {}; give a PLY, LAS, LAZ, E57, PCD or text file",
+            quoted(line)
+        ),
     }
 }
 
@@ -77,18 +80,10 @@ fn text(beginning: &[u8]) -> Option<&'static str> {
             Some("a Wavefront OBJ model: convert it to PLY with normals and radii")
         }
         _ if words.iter().all(|word| word.trim_end_matches(',').parse::<f64>().is_ok()) => {
-            Some("a table of numbers (XYZ, PTS): convert it to PLY")
+            Some("a table of fewer than three numbers a line: give x, y and z")
         }
-        _ if is_table_head(line) => Some("a table with named columns (CSV): convert it to PLY"),
         _ => None,
     }
-}
-
-/// Whether a line is a table head with columns x, y and z.
-fn is_table_head(line: &[u8]) -> bool {
-    let line = String::from_utf8_lossy(line).to_ascii_lowercase();
-    let names: Vec<_> = line.split([',', ';', '\t']).map(|name| name.trim().trim_matches('"')).collect();
-    ["x", "y", "z"].iter().all(|axis| names.contains(axis))
 }
 
 #[cfg(test)]
@@ -96,11 +91,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn files_without_a_signature_are_identified_by_length_columns_or_name() {
+    fn files_without_a_signature_are_identified_by_length_or_name() {
         let stl = [&[0; 80][..], &2u32.to_le_bytes(), &[0; 100]].concat();
         assert!(name("a.ply", &stl, 184).contains("binary STL") && !name("a.ply", &stl, 183).contains("STL"));
-        let cause = name("a.csv", b"\"X\",Y,Z,intensity\n1,2,3,4\n", 30);
-        assert!(cause.contains("CSV"), "{cause}");
         for (file, what) in [("a.splat", ".splat"), ("b.SPZ", ".spz")] {
             let cause = name(file, b"\x1f\x8b\x08\0", 4);
             assert!(cause.contains("3D Gaussians") && cause.contains(what), "{cause}");
@@ -116,7 +109,7 @@ mod tests {
             (b"\x1f\x8b\x08\0", "gzip"),
             (b"LASF\0\0", "LAS"),
             (b"# made by hand\n\nv 1 2 3\n", "OBJ"),
-            (b"1.0 2.0, 3\n", "table of numbers"),
+            (b"1.0 2.0\n", "fewer than three numbers"),
             (b"<!DOCTYPE html>", "HTML"),
             (b"plyx\nformat", "begins with `plyx`"),
             (b"\0\0\0\0", "begins with `\\x00"),

@@ -26,6 +26,8 @@ pub struct LoadOptions {
     pub estimate: Estimate,
     /// Whether faces are rendered as triangles; those of a file with lines always are.
     pub polygons: bool,
+    /// Names of the columns of text files, in place of their own.
+    pub columns: Option<Vec<String>>,
     /// How faces are converted to lines; `None` keeps them.
     pub lines: Option<ToLines>,
     /// Tolerance of the simplification of lines, in the positions' unit; `None` keeps all vertices.
@@ -184,6 +186,7 @@ impl Load<'_> {
         }
         let options = ReadOptions {
             scalar: self.property().map(str::to_owned),
+            columns: self.options.columns.clone(),
             triangles: self.draws_faces(),
             texture: self.options.texture.clone(),
         };

@@ -18,6 +18,9 @@ pub struct Points {
     /// Renders N points of each file, evenly spread, with estimated radii and without lines and faces [default: all, as the file has them]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub points: Option<u64>,
+    /// Names of the columns of text files, such as x,y,z,intensity [default: the file's first line, or by the numbers]
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub columns: Option<Vec<String>>,
     /// Radius of every surfel, in the positions' unit [default: the file's, or else estimated]
     #[arg(long, value_name = "R", value_parser = positive::<f32>, allow_hyphen_values = true)]
     pub radius: Option<f32>,

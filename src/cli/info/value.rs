@@ -37,6 +37,7 @@ pub(super) fn run(args: &Info) -> Result<()> {
 fn file(all: &mut Object, args: &Info) -> Result<()> {
     let path = Path::new(&args.input);
     let options = ReadOptions {
+        columns: args.points.columns.clone(),
         triangles: args.points.polygons,
         ..Default::default()
     };

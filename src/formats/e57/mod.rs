@@ -1,0 +1,182 @@
+//! E57 reader: all scans of a file, in its coordinates.
+//!
+//! Spherical coordinates become Cartesian ones, and each scan's pose is applied, in float64. Points that a scan marks as invalid, or as
+//! directions without a range, are left out. The values of a point are properties of the element `point`, where a scan lacks one it is no
+//! number; colours are scaled to the limits that the file states and are sRGB-encoded. Fields of extensions have their own names; those of
+//! the surface normal extension are `nx ny nz`.
+//!
+//! The scanner of a single scan is [`View::From`].
+//!
+//! Source: ASTM E2807-11.
+
+mod scan;
+#[cfg(test)]
+mod tests;
+
+use super::declared::{Element, Encoding};
+use super::meter::Meter;
+use super::reader::{Input, Reader};
+use super::source::{Parsed, Source};
+use super::table::{Arrays, Layout, Points, fill};
+use super::{Inspected, Loaded, ReadOptions, Report, sniff};
+use crate::Progress;
+use crate::error::Cause;
+use crate::geometry::{Cloud, View};
+use e57::{E57Reader, PointCloud};
+use glam::DVec3;
+use scan::Scan;
+use std::io::{self, Read, Seek, SeekFrom};
+
+/// The E57 format.
+pub(super) struct E57;
+
+impl Reader for E57 {
+    fn name(&self) -> &'static str {
+        "E57"
+    }
+
+    fn extensions(&self) -> &'static [&'static str] {
+        &["e57"]
+    }
+
+    fn knows(&self, beginning: &[u8]) -> Option<bool> {
+        Some(beginning.starts_with(b"ASTM-E57"))
+    }
+
+    fn inspect(
+        &self,
+        input: &Input<'_>,
+        options: &ReadOptions,
+        progress: &dyn Progress,
+    ) -> Parsed<Inspected<Cause>> {
+        let source = &input.source;
+        let beginning = source.beginning()?;
+        if !beginning.starts_with(b"ASTM-E57") {
+            return Err(sniff::name(input.name, &beginning, source.size()).into());
+        }
+        let file = E57Reader::new(Stream { source, at: 0 }).map_err(cause)?;
+        let clouds: Vec<PointCloud> =
+            file.pointclouds().into_iter().filter(|cloud| cloud.records > 0).collect();
+        let properties = scan::properties(&clouds);
+        let count = clouds.iter().try_fold(0u64, |sum, cloud| sum.checked_add(cloud.records));
+        let count = count.ok_or("its scans claim more than 2⁶⁴ points: fetch it again")?;
+        let element = Element { name: "point".into(), count, properties };
+        let some = if count > 0 {
+            Ok(())
+        } else {
+            Err(Cause::from("it has no scan with points: give a file with at least one"))
+        };
+        let loaded =
+            some.and_then(|()| Layout::of(&element, options.scalar.as_deref(), false)).and_then(|layout| {
+                refuse_lie(&clouds, source.size())?;
+                let (arrays, tally) = {
+                    let mut arrays = Arrays::new(count, &layout)?;
+                    let meter = Meter::new(progress, count);
+                    let sizes = clouds.iter().map(|cloud| cloud.records as usize);
+                    let tally = fill(
+                        &mut arrays,
+                        &layout,
+                        sizes,
+                        || (),
+                        |(), index, rows| {
+                            // Each thread has its own reader.
+                            let mut file = E57Reader::new(Stream { source, at: 0 }).map_err(cause)?;
+                            let scan = Scan::of(&clouds[index], &element.properties, &layout);
+                            let points = file.pointcloud_raw(&clouds[index]).map_err(cause)?;
+                            scan.read(points, rows, &meter)
+                        },
+                    )?;
+                    meter.finish();
+                    (arrays, tally)
+                };
+                let points = Points::new(arrays, tally)?;
+                let view = view(&clouds, points.cloud.origin);
+                let report = Report {
+                    details: details(&file, &clouds),
+                    ..Report::of_points(Encoding::Compressed, &element, &layout, &points)
+                };
+                Ok(Loaded { cloud: Cloud { view, ..points.cloud }, report })
+            });
+        Ok(Inspected { format: self.name(), encoding: Encoding::Compressed, elements: vec![element], loaded })
+    }
+}
+
+/// The contents of a file as a stream.
+struct Stream<'a> {
+    source: &'a Source<'a>,
+    at: u64,
+}
+
+impl Read for Stream<'_> {
+    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+        let length = self.source.size().saturating_sub(self.at).min(to.len() as u64);
+        let part = self.source.part(self.at, length).map_err(|cause| io::Error::other(cause.to_string()))?;
+        to[..part.len()].copy_from_slice(&part);
+        self.at += length;
+        Ok(part.len())
+    }
+}
+
+impl Seek for Stream<'_> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let at = match to {
+            SeekFrom::Start(at) => Some(at),
+            SeekFrom::End(by) => self.source.size().checked_add_signed(by),
+            SeekFrom::Current(by) => self.at.checked_add_signed(by),
+        };
+        self.at = at.ok_or(io::ErrorKind::InvalidInput)?;
+        Ok(self.at)
+    }
+}
+
+fn cause(error: e57::Error) -> Cause {
+    format!("{error}: fetch or write it again").into()
+}
+
+/// Returns an error if the scans claim more points than the file has bits for.
+fn refuse_lie(clouds: &[PointCloud], size: u64) -> Parsed<()> {
+    for cloud in clouds {
+        let bits: u64 = cloud.prototype.iter().map(|record| scan::bits(&record.data_type)).sum();
+        if u128::from(cloud.records) * u128::from(bits) > 8 * u128::from(size) {
+            return Err(format!(
+                "a scan claims {} points of {bits} bits, but the file has {size} bytes: it is truncated or wrong; fetch it again",
+                cloud.records
+            )
+            .into());
+        }
+    }
+    Ok(())
+}
+
+/// Where a single scan was taken from, if its pose or the order of its points tells.
+fn view(clouds: &[PointCloud], origin: DVec3) -> View {
+    match clouds {
+        [cloud] if cloud.transform.is_some() || scan::is_structured(cloud) => {
+            View::From((scan::position(cloud) - origin).as_vec3())
+        }
+        _ => View::Unknown,
+    }
+}
+
+/// Facts by name: coordinate system, scans with their numbers of points, scanners and positions.
+fn details(file: &E57Reader<Stream>, clouds: &[PointCloud]) -> Vec<(String, String)> {
+    let mut facts = vec![
+        ("library".to_owned(), file.library_version().unwrap_or_default().to_owned()),
+        ("coordinate system".to_owned(), file.coordinate_metadata().unwrap_or_default().to_owned()),
+        ("scans".to_owned(), clouds.len().to_string()),
+    ];
+    for (number, cloud) in clouds.iter().enumerate() {
+        let scanner =
+            [&cloud.sensor_vendor, &cloud.sensor_model].map(|name| name.as_deref().unwrap_or_default());
+        let place = cloud.transform.as_ref().map(|_| format!("from {}", scan::position(cloud)));
+        let parts = [
+            cloud.name.clone().unwrap_or_default(),
+            format!("{} points", cloud.records),
+            scanner.join(" ").trim().to_owned(),
+        ];
+        let parts: Vec<String> = parts.into_iter().chain(place).filter(|part| !part.is_empty()).collect();
+        facts.push((format!("scan {number}"), parts.join(", ")));
+    }
+    facts.retain(|(_, value)| !value.is_empty());
+    facts
+}

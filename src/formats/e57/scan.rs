@@ -1,0 +1,312 @@
+//! A scan of a file.
+
+use super::cause;
+use crate::formats::declared::{Kind, Property, Scalar};
+use crate::formats::meter::Meter;
+use crate::formats::source::Parsed;
+use crate::formats::table::{Layout, ROWS, Rows};
+use e57::{PointCloud, RawValues, RecordDataType, RecordName, RecordValue, Transform};
+use glam::{DMat3, DQuat, DVec3};
+use std::io::{Read, Seek};
+
+/// Coordinates of the points, by index in the prototype.
+#[derive(Clone, Copy)]
+enum Coordinates {
+    Cartesian([usize; 3]),
+    /// Range, azimuth, elevation.
+    Spherical([usize; 3]),
+    Missing,
+}
+
+/// A value of a point.
+#[derive(Clone, Copy)]
+enum Value {
+    /// A coordinate.
+    Axis(usize),
+    /// A field, times a factor after a summand.
+    Field {
+        index: usize,
+        summand: f64,
+        factor: f64,
+    },
+    /// A field that is valid where another one is 0.
+    Valid {
+        index: usize,
+        invalid: usize,
+    },
+    Missing,
+}
+
+/// How the points of a scan become rows.
+pub struct Scan<'a> {
+    cloud: &'a PointCloud,
+    coordinates: Coordinates,
+    /// The flag of points that are no positions.
+    invalid: Option<usize>,
+    rotation: DMat3,
+    translation: DVec3,
+    /// Each filled column with its value.
+    used: Vec<(usize, Value)>,
+}
+
+/// Largest code of 16-bit colours.
+const WHITE: f64 = 65535.0;
+
+/// The properties of all scans: coordinates first, and colours in 8 bits if all have these.
+pub fn properties(clouds: &[PointCloud]) -> Vec<Property> {
+    let mut all: Vec<Property> = Vec::new();
+    let mut push = |name: &str, scalar: Scalar| {
+        if all.iter().all(|property| property.name != name) {
+            all.push(Property { name: name.into(), kind: Kind::Scalar(scalar) });
+        }
+    };
+    if clouds.iter().any(|cloud| !matches!(coordinates(cloud), Coordinates::Missing)) {
+        ["x", "y", "z"].into_iter().for_each(|axis| push(axis, Scalar::F64));
+    }
+    let bytes = clouds.iter().all(has_bytes);
+    for record in clouds.iter().flat_map(|cloud| &cloud.prototype) {
+        if let Some(name) = name(&record.name) {
+            let scalar = match (&record.data_type, is_colour(&name)) {
+                (_, true) => {
+                    if bytes {
+                        Scalar::U8
+                    } else {
+                        Scalar::U16
+                    }
+                }
+                (RecordDataType::Single { .. }, _) => Scalar::F32,
+                (RecordDataType::Integer { .. }, _) => Scalar::I64,
+                _ => Scalar::F64,
+            };
+            push(&name, scalar);
+        }
+    }
+    all
+}
+
+/// The property of a field; `None` for coordinates and flags.
+fn name(record: &RecordName) -> Option<String> {
+    let name = match record {
+        RecordName::Intensity => "intensity",
+        RecordName::ColorRed => "red",
+        RecordName::ColorGreen => "green",
+        RecordName::ColorBlue => "blue",
+        RecordName::RowIndex => "row",
+        RecordName::ColumnIndex => "column",
+        RecordName::ReturnCount => "number_of_returns",
+        RecordName::ReturnIndex => "return_index",
+        RecordName::TimeStamp => "time",
+        RecordName::Unknown { name, .. } => match name.as_str() {
+            "normalX" => "nx",
+            "normalY" => "ny",
+            "normalZ" => "nz",
+            // Those of positions would be taken for the position.
+            "x" | "y" | "z" => return None,
+            other => other,
+        },
+        _ => return None,
+    };
+    Some(name.to_owned())
+}
+
+fn is_colour(name: &str) -> bool {
+    matches!(name, "red" | "green" | "blue")
+}
+
+/// Index of a field in the prototype.
+fn find(cloud: &PointCloud, name: &RecordName) -> Option<usize> {
+    cloud.prototype.iter().position(|record| record.name == *name)
+}
+
+fn coordinates(cloud: &PointCloud) -> Coordinates {
+    let three = |names: [RecordName; 3]| {
+        let [a, b, c] = names.map(|name| find(cloud, &name));
+        Some([a?, b?, c?])
+    };
+    let cartesian = three([RecordName::CartesianX, RecordName::CartesianY, RecordName::CartesianZ]);
+    let spherical =
+        || three([RecordName::SphericalRange, RecordName::SphericalAzimuth, RecordName::SphericalElevation]);
+    cartesian
+        .map(Coordinates::Cartesian)
+        .or_else(|| spherical().map(Coordinates::Spherical))
+        .unwrap_or(Coordinates::Missing)
+}
+
+/// Whether the points are those of a scanner's grid, or around it.
+pub fn is_structured(cloud: &PointCloud) -> bool {
+    matches!(coordinates(cloud), Coordinates::Spherical(_)) || find(cloud, &RecordName::RowIndex).is_some()
+}
+
+/// Position of the scanner.
+pub fn position(cloud: &PointCloud) -> DVec3 {
+    pose(cloud).1
+}
+
+fn pose(cloud: &PointCloud) -> (DMat3, DVec3) {
+    let Transform { rotation, translation } = cloud.transform.clone().unwrap_or_default();
+    let rotation = DQuat::from_xyzw(rotation.x, rotation.y, rotation.z, rotation.w);
+    // Writers that leave it all 0 mean none.
+    let rotation = if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY };
+    (DMat3::from_quat(rotation), DVec3::new(translation.x, translation.y, translation.z))
+}
+
+/// Bits of a value of this type.
+pub fn bits(kind: &RecordDataType) -> u64 {
+    match kind {
+        RecordDataType::Single { .. } => 32,
+        RecordDataType::Double { .. } => 64,
+        RecordDataType::ScaledInteger { min, max, .. } | RecordDataType::Integer { min, max } => {
+            u64::from(128 - (i128::from(*max) - i128::from(*min)).max(0).leading_zeros())
+        }
+    }
+}
+
+/// Range of a field's values: what the type can hold, if it is limited.
+fn range(kind: &RecordDataType) -> Option<[f64; 2]> {
+    match *kind {
+        RecordDataType::Single { min, max } => Some([min?.into(), max?.into()]),
+        RecordDataType::Double { min, max } => Some([min?, max?]),
+        RecordDataType::Integer { min, max } => Some([min as f64, max as f64]),
+        RecordDataType::ScaledInteger { min, max, scale, offset } => {
+            Some([min, max].map(|value| value as f64 * scale + offset))
+        }
+    }
+}
+
+/// Range of a colour channel: the stated limits, or else those of its type.
+fn limits(cloud: &PointCloud, name: &str, kind: &RecordDataType) -> [f64; 2] {
+    let value = |value: &Option<RecordValue>| value.as_ref().and_then(|value| value.to_f64(kind).ok());
+    let stated = cloud.color_limits.as_ref().and_then(|limits| {
+        let [min, max] = match name {
+            "red" => [&limits.red_min, &limits.red_max],
+            "green" => [&limits.green_min, &limits.green_max],
+            _ => [&limits.blue_min, &limits.blue_max],
+        };
+        Some([value(min)?, value(max)?])
+    });
+    let usable = |[min, max]: &[f64; 2]| max > min && (max - min).is_finite();
+    stated.filter(usable).or_else(|| range(kind).filter(usable)).unwrap_or([0.0, 1.0])
+}
+
+/// Whether a scan's colours, if it has any, are bytes.
+fn has_bytes(cloud: &PointCloud) -> bool {
+    cloud.prototype.iter().all(|record| {
+        let name = name(&record.name).unwrap_or_default();
+        !is_colour(&name) || limits(cloud, &name, &record.data_type) == [0.0, 255.0]
+    })
+}
+
+impl<'a> Scan<'a> {
+    /// The points of a scan as these properties.
+    pub fn of(cloud: &'a PointCloud, properties: &[Property], layout: &Layout) -> Self {
+        let (rotation, translation) = pose(cloud);
+        let coordinates = coordinates(cloud);
+        let invalid = match coordinates {
+            Coordinates::Spherical(_) => find(cloud, &RecordName::SphericalInvalidState),
+            _ => find(cloud, &RecordName::CartesianInvalidState),
+        };
+        let columns = layout.columns.iter().enumerate();
+        let used = columns
+            .filter_map(|(column, index)| Some((column, value(cloud, properties.get((*index)?)?))))
+            .collect();
+        Self { cloud, coordinates, invalid, rotation, translation, used }
+    }
+
+    /// Reads all points.
+    pub fn read<T: Read + Seek>(
+        &self,
+        mut points: e57::PointCloudReaderRaw<'_, T>,
+        rows: &mut Rows,
+        meter: &Meter,
+    ) -> Parsed<()> {
+        let width = self.used.len();
+        let mut numbers = vec![0.0; width * ROWS];
+        while rows.left() > 0 {
+            let count = rows.left().min(ROWS);
+            for row in numbers.chunks_exact_mut(width).take(count) {
+                let point = points
+                    .next()
+                    .ok_or("a scan has fewer points than it claims: fetch it again")?
+                    .map_err(cause)?;
+                self.point(&point, row)?;
+            }
+            rows.next(count, |block| {
+                for (index, (column, _)) in self.used.iter().enumerate() {
+                    let values = numbers.chunks_exact(width).map(|row| row[index]);
+                    block.column_mut(*column).iter_mut().zip(values).for_each(|(to, value)| *to = value);
+                }
+            });
+            meter.add(count as u64)?;
+        }
+        Ok(())
+    }
+
+    /// Writes the used values of a point.
+    fn point(&self, point: &RawValues, row: &mut [f64]) -> Parsed<()> {
+        let number =
+            |index: usize| point[index].to_f64(&self.cloud.prototype[index].data_type).map_err(cause);
+        let position = self.position(&number)?;
+        for (to, (_, value)) in row.iter_mut().zip(&self.used) {
+            *to = match *value {
+                Value::Axis(axis) => position[axis],
+                Value::Field { index, summand, factor } => (number(index)? + summand) * factor,
+                Value::Valid { index, invalid } => {
+                    if number(invalid)? == 0.0 {
+                        number(index)?
+                    } else {
+                        f64::NAN
+                    }
+                }
+                Value::Missing => f64::NAN,
+            };
+        }
+        Ok(())
+    }
+
+    /// The position in the file's coordinates; not finite for a point without one.
+    fn position(&self, number: impl Fn(usize) -> Parsed<f64>) -> Parsed<DVec3> {
+        if let Some(invalid) = self.invalid
+            && number(invalid)? != 0.0
+        {
+            return Ok(DVec3::NAN);
+        }
+        let three =
+            |[a, b, c]: [usize; 3]| Ok::<_, crate::error::Cause>([number(a)?, number(b)?, number(c)?]);
+        let own = match self.coordinates {
+            Coordinates::Cartesian(indices) => DVec3::from(three(indices)?),
+            Coordinates::Spherical(indices) => {
+                let [range, azimuth, elevation] = three(indices)?;
+                range
+                    * DVec3::new(
+                        elevation.cos() * azimuth.cos(),
+                        elevation.cos() * azimuth.sin(),
+                        elevation.sin(),
+                    )
+            }
+            Coordinates::Missing => DVec3::NAN,
+        };
+        Ok(self.rotation * own + self.translation)
+    }
+}
+
+/// Where the value of a property comes from.
+fn value(cloud: &PointCloud, property: &Property) -> Value {
+    if let Some(axis) = ["x", "y", "z"].iter().position(|axis| property.name == *axis) {
+        return Value::Axis(axis);
+    }
+    let index = cloud.prototype.iter().position(|record| name(&record.name).as_ref() == Some(&property.name));
+    let Some(index) = index else {
+        return Value::Missing;
+    };
+    if is_colour(&property.name) {
+        let [min, max] = limits(cloud, &property.name, &cloud.prototype[index].data_type);
+        let white = if property.kind == Kind::Scalar(Scalar::U8) { 255.0 } else { WHITE };
+        return Value::Field { index, summand: -min, factor: white / (max - min) };
+    }
+    let flag = match property.name.as_str() {
+        "intensity" => find(cloud, &RecordName::IsIntensityInvalid),
+        "time" => find(cloud, &RecordName::IsTimeStampInvalid),
+        _ => None,
+    };
+    flag.map_or(Value::Field { index, summand: 0.0, factor: 1.0 }, |invalid| Value::Valid { index, invalid })
+}

@@ -1,0 +1,102 @@
+//! LAS reader, and LAZ: versions 1.0 to 1.4, point formats 0 to 10, extra bytes.
+//!
+//! The record's fields are properties of the element `point`, named as laspy names them; `x y z` are scaled and shifted in float64,
+//! `scan_angle` is in degrees. Extra bytes are properties, too: those that are named as [PLY's properties](super::ply), `nx ny nz` and
+//! `radius` say, have the same meaning.
+//!
+//! Colours are 16-bit and sRGB-encoded; if no channel of any point exceeds 255 they are 8-bit, and if all are 0 there are none.
+//!
+//! Source: ASPRS LAS specification 1.4 R15; laszip's chunks.
+
+mod chunks;
+mod details;
+mod extra;
+mod fields;
+mod header;
+mod read;
+#[cfg(test)]
+mod tests;
+
+use super::declared::{Element, Encoding, Kind, Property, Scalar};
+use super::meter::Meter;
+use super::reader::{Input, Reader};
+use super::source::Parsed;
+use super::table::{Layout, Points, linear as decode};
+use super::{Inspected, Loaded, ReadOptions, Report};
+use crate::Progress;
+use crate::error::Cause;
+use crate::geometry::{Cloud, Colours};
+use header::Header;
+
+/// The LAS and LAZ formats.
+pub(super) struct Las;
+
+impl Reader for Las {
+    fn name(&self) -> &'static str {
+        "LAS"
+    }
+
+    fn extensions(&self) -> &'static [&'static str] {
+        &["las", "laz"]
+    }
+
+    fn knows(&self, beginning: &[u8]) -> Option<bool> {
+        Some(beginning.starts_with(b"LASF"))
+    }
+
+    fn inspect(
+        &self,
+        input: &Input<'_>,
+        options: &ReadOptions,
+        progress: &dyn Progress,
+    ) -> Parsed<Inspected<Cause>> {
+        let header = Header::read(input)?;
+        let fields = fields::of(&header);
+        let property =
+            |field: &fields::Field| Property { name: field.name.clone(), kind: Kind::Scalar(field.scalar) };
+        let element = Element {
+            name: "point".into(),
+            count: header.count,
+            properties: fields.iter().map(property).collect(),
+        };
+        let encoding =
+            if header.format.is_compressed { Encoding::Compressed } else { Encoding::BinaryLittleEndian };
+        let loaded = Layout::of(&element, options.scalar.as_deref(), false).and_then(|layout| {
+            let table =
+                read::Table { input, header: &header, fields: &fields, element: &element, layout: &layout };
+            load(&table, encoding, progress)
+        });
+        Ok(Inspected { format: self.name(), encoding, elements: vec![element], loaded })
+    }
+}
+
+fn load(table: &read::Table, encoding: Encoding, progress: &dyn Progress) -> Parsed<Loaded> {
+    let meter = Meter::new(progress, table.input.source.size());
+    let (arrays, tally) = table.read(&meter)?;
+    meter.finish();
+    let points = Points::new(arrays, tally)?;
+    let report = Report {
+        details: details::of(table.header),
+        ..Report::of_points(encoding, table.element, table.layout, &points)
+    };
+    let cloud = Cloud { colours: points.cloud.colours.and_then(colours), ..points.cloud };
+    Ok(Loaded { cloud, report })
+}
+
+/// Colours that are all 0 are none, and those of which no channel exceeds 255 are 8-bit.
+fn colours(colours: Colours) -> Option<Colours> {
+    let Colours::Linear(linear) = colours else {
+        return Some(colours);
+    };
+    let largest = linear.iter().flatten().copied().fold(0.0, f32::max);
+    if largest == 0.0 {
+        return None;
+    }
+    if largest > decode(255.0, Scalar::U16) {
+        return Some(Colours::Linear(linear));
+    }
+    // That far, the encoding is linear.
+    let factor = 255.0 / decode(255.0, Scalar::U16);
+    let code = |channel: f32| (channel * factor).round() as u8;
+    Some(Colours::Srgb8(linear.iter().map(|&[r, g, b]| [code(r), code(g), code(b), 0]).collect()))
+}

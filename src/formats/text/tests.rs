@@ -1,0 +1,123 @@
+//! Tables of several programs, and damage.
+
+use super::*;
+use crate::formats::{read, read_bytes};
+use crate::geometry::Colours;
+use glam::Vec3;
+use std::path::PathBuf;
+
+fn parsed(text: &str) -> crate::Result<Loaded> {
+    read_bytes("a.xyz", text.as_bytes(), &ReadOptions::default())
+}
+
+fn understood(text: &str) -> Vec<String> {
+    parsed(text).unwrap_or_else(|error| panic!("{text}: {error}")).report.understood
+}
+
+#[test]
+fn files_of_open3d_agree() {
+    for extension in ["xyz", "xyzn", "xyzrgb", "pts"] {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/formats");
+        let path = PathBuf::from(folder).join(format!("open3d.{extension}"));
+        let Loaded { cloud, report } = read(&path, &ReadOptions::default(), &()).unwrap();
+        assert_eq!((report.points, cloud.len(), report.encoding), (60, 60, Encoding::Ascii), "{extension}");
+        assert_eq!(cloud.positions[1], Vec3::new(-2.037_109_4, -0.301_757_8, -1.725_585_9));
+        assert_eq!(cloud.normals.is_some(), extension == "xyzn");
+        assert_eq!(cloud.colours.is_some(), ["xyzrgb", "pts"].contains(&extension));
+        let codes = |i: u64| [i * 4, 255 - i, i * 7 % 256, 0].map(|code| code as u8);
+        if let Some(Colours::Srgb8(colours)) = &cloud.colours {
+            assert!((0..).zip(colours).all(|(i, code)| *code == codes(i)), "{extension}");
+        }
+    }
+}
+
+#[test]
+fn names_come_from_the_first_line() {
+    let x = ["x", "y", "z"];
+    assert_eq!(understood("X;Y;Z;Intensity\n1;2;3;4\n"), x);
+    assert_eq!(
+        understood("\"x\",\"y\",\"z\",\"Red\",\"Green\",\"Blue\"\n1,2,3,4,5,6\n"),
+        [&x[..], &["red", "green", "blue"]].concat()
+    );
+    assert_eq!(
+        understood("//X Y Z R G B Nx Ny Nz\n1 2 3 4 5 6 0 0 1\n"),
+        [&x[..], &["red", "green", "blue", "nx", "ny", "nz"]].concat()
+    );
+    assert_eq!(understood("# made by hand\n# x[m] radius y(m) z\n1 2 3 4\n"), ["x", "radius", "y", "z"]);
+    assert_eq!(understood("id,x [m],y [m],z [m],radius\n7,1,2,3,4\n"), ["x", "y", "z", "radius"]);
+    let Loaded { cloud, .. } = parsed("id,x,y,z\n7,1,2,3\n8,,5,6\n").unwrap();
+    assert_eq!(
+        (cloud.origin, cloud.len()),
+        (glam::DVec3::new(1.0, 2.0, 3.0), 1),
+        "an empty cell is no number"
+    );
+}
+
+#[test]
+fn columns_without_names_are_found_by_their_numbers() {
+    let x = ["x", "y", "z"];
+    let of = |row: &str| understood(&format!("{row}\n{row}\n"));
+    assert_eq!(of("1 2 3"), x);
+    assert_eq!(of("1 2 3 0.6 0 0.8"), [&x[..], &["nx", "ny", "nz"]].concat());
+    assert_eq!(of("1\t2\t3\t200 0 0"), [&x[..], &["red", "green", "blue"]].concat());
+    assert_eq!(of("1 2 3 -1613 52 70 64"), [&x[..], &["red", "green", "blue"]].concat());
+    assert_eq!(of("1 2 3 7 8 1 2 3 0 1 0"), [&x[..], &["red", "green", "blue", "nx", "ny", "nz"]].concat());
+    assert_eq!(of("1 2 3 -1 -2 -3"), x, "neither colours nor normals");
+    let options = ReadOptions { scalar: Some("intensity".into()), ..Default::default() };
+    let Loaded { cloud, .. } = read_bytes("a.pts", b"2\n1 2 3 -5 1 2 3\n1 2 4 -6 1 2 3\n", &options).unwrap();
+    assert_eq!(cloud.scalar, Some(vec![-5.0, -6.0]));
+    let columns = Some(["z", "y", "x"].map(str::to_owned).into());
+    let named = read_bytes("a", b"1 2 3\n", &ReadOptions { columns, ..Default::default() }).unwrap();
+    assert_eq!(named.cloud.origin, glam::DVec3::new(3.0, 2.0, 1.0));
+}
+
+#[test]
+fn colours_are_codes_of_either_size_or_fractions() {
+    let colours = |rgb: &str| parsed(&format!("x y z r g b\n1 2 3 {rgb}\n")).unwrap().cloud.colours.unwrap();
+    assert_eq!(colours("255 0 1"), Colours::Srgb8(vec![[255, 0, 1, 0]]));
+    assert_eq!(colours("1 0 0.5"), Colours::Srgb8(vec![[255, 0, 128, 0]]));
+    assert_eq!(colours("65535 0 0"), Colours::Linear(vec![[1.0, 0.0, 0.0]]));
+}
+
+#[test]
+fn long_files_are_read_in_pieces_with_comments_and_any_line_ends() {
+    let count = 100_000;
+    for end in ["\n", "\r\n", "\r"] {
+        let mut text = format!("# a comment{end}{end}");
+        for i in 0..count {
+            text += &format!("{i} {} {}.25{end}", i % 7, i % 11);
+            if i % 1000 == 0 {
+                text += &format!("// {i}{end}{end}");
+            }
+        }
+        assert!(text.len() > 1 << 20);
+        let Loaded { cloud, report } = parsed(&text).unwrap();
+        assert_eq!((cloud.len(), report.points), (count, count as u64), "{end:?}");
+        for (i, position) in cloud.positions.iter().enumerate() {
+            let at = cloud.origin + position.as_dvec3();
+            assert_eq!(at, glam::DVec3::new(i as f64, (i % 7) as f64, (i % 11) as f64 + 0.25));
+        }
+        let late = text.replacen(&format!("99998 3 8.25{end}"), &format!("99998 3{end}"), 1);
+        let line = 3 + 99_998 + 2 * 100;
+        let cause = parsed(&late).unwrap_err().to_string();
+        assert!(cause.contains(&format!("line {line}: 2 values, where the first line has 3")), "{cause}");
+    }
+}
+
+#[test]
+fn damage_is_named() {
+    let has = |text: &str, what: &str| {
+        let cause = parsed(text).unwrap_err().to_string();
+        assert!(cause.contains(what), "{cause}: expected {what}");
+    };
+    has("1 2 3\n4 5\n", "line 2: 2 values");
+    has("1 2 3\n4 5 6 7\n", "line 2: 4 values");
+    has("1 2 3\n4 five 6\n", "line 2: `five` is not a number");
+    has("x,y,z\n", "no points");
+    has("x,y,z\n1,2,3,4\n", "4 values, and 3 columns are named");
+    has("nan nan nan\n", "none of its 1 points");
+    has("", "is empty");
+    has("1 2\n3 4\n", "not a point cloud");
+    let long = format!("1 2 3\n{}\n", "1 ".repeat(1 << 20));
+    has(&long, "a line of more than 65536 bytes");
+}
