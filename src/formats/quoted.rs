@@ -22,3 +22,9 @@ pub fn quoted(bytes: &[u8]) -> String {
     }
     format!("`{text}`")
 }
+
+/// A message of another library on one line, without control characters.
+#[cfg(feature = "e57")]
+pub fn on_one_line(message: &str) -> String {
+    message.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+}

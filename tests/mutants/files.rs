@@ -85,6 +85,15 @@ pub fn all() -> Vec<Vec<u8>> {
     files
 }
 
+/// Other programs' files of these extensions (tools/format_samples).
+pub fn of_formats(extensions: &[&str]) -> Vec<Vec<u8>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/formats");
+    let mut paths: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|own| extensions.iter().any(|one| own == *one)));
+    paths.sort();
+    paths.iter().map(|path| std::fs::read(path).unwrap()).collect()
+}
+
 fn encode(format: &str, header: &str, values: &str) -> Vec<u8> {
     let mut bytes =
         format!("ply\nformat {format} 1.0\ncomment to be damaged\n{header}\nend_header\n").into_bytes();

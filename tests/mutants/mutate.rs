@@ -197,3 +197,17 @@ fn swap_lines(bytes: &mut Vec<u8>, random: &mut Random) {
     }
     *bytes = lines.concat();
 }
+
+/// Writes the checksums of an E57 file's pages, so that damage within them is read.
+pub fn renew_checksums(bytes: &mut [u8]) {
+    for page in bytes.chunks_exact_mut(1024) {
+        let (data, checksum) = page.split_at_mut(1020);
+        checksum.copy_from_slice(&crc32c(data).to_be_bytes());
+    }
+}
+
+/// The cyclic redundancy check with Castagnoli's polynomial.
+fn crc32c(data: &[u8]) -> u32 {
+    let shift = |crc: u32, _| if crc & 1 == 1 { crc >> 1 ^ 0x82f6_3b78 } else { crc >> 1 };
+    !data.iter().fold(!0, |crc, byte| (0..8).fold(crc ^ u32::from(*byte), shift))
+}

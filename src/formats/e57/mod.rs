@@ -15,6 +15,7 @@ mod tests;
 
 use super::declared::{Element, Encoding};
 use super::meter::Meter;
+use super::quoted::on_one_line;
 use super::reader::{Input, Reader};
 use super::source::{Parsed, Source};
 use super::table::{Arrays, Layout, Points, fill};
@@ -130,7 +131,7 @@ impl Seek for Stream<'_> {
 }
 
 fn cause(error: e57::Error) -> Cause {
-    format!("{error}: fetch or write it again").into()
+    format!("{}: fetch or write it again", on_one_line(&error.to_string())).into()
 }
 
 /// Returns an error if the scans claim more points than the file has bits for.
