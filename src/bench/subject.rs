@@ -63,7 +63,8 @@ impl Subject {
     /// [`Error::Io`] and [`Error::Input`] if a file cannot be read, has no points, or `mesh` has no triangles.
     pub fn scan(path: &Path, mesh: Option<&Path>, progress: &dyn Progress) -> Result<Self> {
         let triangles = ReadOptions { triangles: true, ..Default::default() };
-        let cloud = formats::read(path, &triangles, progress)?.cloud;
+        let loaded = formats::read(path, &triangles, progress)?;
+        let (up, cloud) = (loaded.up(), loaded.cloud);
         let other =
             mesh.map(|mesh| Ok::<_, Error>(formats::read(mesh, &triangles, progress)?.cloud)).transpose()?;
         let name = path.display().to_string();
@@ -79,7 +80,8 @@ impl Subject {
             return Err(Error::input(name, "no points: give points, or a mesh"));
         };
         let bounds = mesh.as_ref().map_or(extent.bounds(), truth::Traceable::bounds);
-        let (viewpoint, digest) = (framing(&extent)?, mesh.as_ref().map(Mesh::digest).unwrap_or_default());
+        let (viewpoint, digest) =
+            (framing(&extent, up)?, mesh.as_ref().map(Mesh::digest).unwrap_or_default());
         Ok(Self {
             name,
             digest,
@@ -199,7 +201,7 @@ pub fn pixel_angle(from: &Viewpoint, rows: u32) -> f64 {
 }
 
 /// The viewpoint of `surfel render` for a square picture, if no normals have to be estimated.
-fn framing(extent: &Extent) -> Result<Viewpoint> {
-    let Pose { eye, target, up, .. } = extent.pose(DVec3::Y, FOV, 1.0)?;
+fn framing(extent: &Extent, up: DVec3) -> Result<Viewpoint> {
+    let Pose { eye, target, up, .. } = extent.pose(up, FOV, 1.0)?;
     Ok(Viewpoint { eye: eye.to_array(), target: target.to_array(), up: up.to_array(), fov_y_deg: FOV })
 }

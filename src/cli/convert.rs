@@ -27,8 +27,10 @@ pub fn run(args: &Convert) -> Result<()> {
         lines: args.lines,
         simplify: args.simplify_lines,
         voxel: args.voxel,
-        colouring: args.colours.colouring(args.up)?,
+        colouring: args.colours.colouring()?,
+        up: args.up,
         texture: args.colours.texture()?,
+        ..Default::default()
     };
     let mut loaded = load(&args.inputs, &options, &*bars)?;
     if let Some(views) = args.weights {

@@ -3,14 +3,13 @@
 use super::args::{PassTimes, Render};
 use super::report::{Gpu, HalfError, Report};
 use super::{camera, files, progress, reference, summary, turntable, vulkan};
-use glam::DVec3;
 use std::path::Path;
 use surfel::embed::Measured;
 use surfel::formats::colour_bar::ColourBar;
 use surfel::formats::image::{Encoded, Output, write};
 use surfel::frame::times::Times;
 use surfel::geometry::{Camera, Extent, Levels, Model, Parts};
-use surfel::load::{Coloured, Colouring, LoadOptions, load};
+use surfel::load::{Coloured, Colouring, LoadOptions, Uncoloured, load};
 use surfel::settings::Shading;
 use surfel::settings::methods::{Method, pull_push};
 use surfel::{Error, Outputs, Picture, Progress, Result, Settings, SplatCounts};
@@ -58,7 +57,7 @@ pub fn run(args: &Render) -> Result<()> {
     args.settings(&args.method.unwrap_or(Method::ALL[0])).check()?;
     let device = vulkan::options(&args.backend.device)?;
     let file = camera::read(&args.camera)?;
-    let colouring = args.colours.colouring(camera::up(&args.camera, file))?;
+    let colouring = args.colours.colouring()?;
     check_colours(args, colouring.as_ref(), &out)?;
     let bars = progress::bars(args.quiet);
     let options = LoadOptions {
@@ -67,6 +66,8 @@ pub fn run(args: &Render) -> Result<()> {
         polygons: args.points.polygons,
         points: args.points.points,
         colouring,
+        uncoloured: args.colours.uncoloured(Uncoloured::Colour),
+        up: camera::up(&args.camera, file),
         texture: args.colours.texture()?,
         ..Default::default()
     };
@@ -75,11 +76,16 @@ pub fn run(args: &Render) -> Result<()> {
     let settings = args.settings(&method);
     settings.check()?;
     settings.check_outputs(args.outputs())?;
+    if !args.quiet {
+        let input = args.inputs.first().map_or(Path::new(""), Path::new);
+        let is_up_given = camera::up(&args.camera, file).is_some();
+        summary::assumptions(input, is_up_given, &loaded).iter().for_each(|line| progress::say(line));
+    }
     let extent = Extent::of(&loaded.model);
     let extent = extent.ok_or_else(|| Error::Usage("the inputs hold nothing that can be drawn".into()))?;
-    let (middle, up) = (extent.centre(), camera::up(&args.camera, file));
-    let framed = args.turntable.map(|_| extent.turned_about(middle, up.normalize_or(DVec3::Y)));
-    let camera = camera::make(&args.camera, file, framed.as_ref().unwrap_or(&extent), args.size)?;
+    let (middle, up) = (extent.centre(), loaded.up);
+    let framed = args.turntable.map(|_| extent.turned_about(middle, up));
+    let camera = camera::make(&args.camera, file, framed.as_ref().unwrap_or(&extent), up, args.size)?;
     if let Some(note) =
         summary::culled_backs(&loaded.model.surfels, &camera, &settings).filter(|_| !args.quiet)
     {

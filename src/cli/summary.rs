@@ -1,7 +1,10 @@
 //! Summary of a model, as text.
 
+use glam::DVec3;
+use std::path::Path;
 use surfel::Settings;
 use surfel::geometry::{Camera, Model, Surfels};
+use surfel::load::LoadedModel;
 use surfel::settings::Cull;
 
 /// Parts of a model: `5 surfels, 2 ribbons`.
@@ -20,6 +23,20 @@ pub fn parts(Model { surfels, primitives }: &Model) -> String {
         (0, false) => others.join(", "),
         (count, _) => [vec![format!("{count} surfels")], others].concat().join(", "),
     }
+}
+
+/// What was assumed of inputs that do not tell, a line each: the up direction, and colours. `is_up_given` if the user or a camera file sets it.
+pub fn assumptions(input: &Path, is_up_given: bool, loaded: &LoadedModel) -> Vec<String> {
+    let name = input.display();
+    let up =
+        (!is_up_given && loaded.up == DVec3::Z).then(|| format!("{name}: z is up: --up 0,1,0 makes it y"));
+    let colours = loaded.suggestion.as_ref().map(|suggestion| {
+        format!(
+            "{name}: no colours, so coloured by {}: --color-by file leaves the points plain",
+            suggestion.name
+        )
+    });
+    up.into_iter().chain(colours).collect()
 }
 
 /// Part of the surfels above which their culling is reported.

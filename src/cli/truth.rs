@@ -6,6 +6,7 @@ use super::files::cache_folder;
 use super::mesh;
 use super::progress::{self, Silent};
 use super::render::keep_layers;
+use glam::DVec3;
 use std::path::Path;
 use surfel::formats::image::{Output, write};
 use surfel::geometry::{Camera, Extent};
@@ -27,7 +28,8 @@ pub fn run(args: &Truth) -> Result<()> {
     args.options().check()?;
     let file = camera::read(&args.camera)?;
     let bars = progress::bars(args.quiet);
-    let camera = camera::make(&args.camera, file, &extent(args, &*bars)?, args.size)?;
+    let (extent, up) = extent(args, camera::up(&args.camera, file), &*bars)?;
+    let camera = camera::make(&args.camera, file, &extent, up, args.size)?;
     let mut truth = match scene(&args.input) {
         Some(name) => trace(args, name, &*scenes::surface(name)?, &camera, &*bars)?,
         None => {
@@ -45,12 +47,12 @@ pub fn run(args: &Truth) -> Result<()> {
     Ok(())
 }
 
-/// The extent that `surfel render` frames, so that both commands have the same default camera.
-fn extent(args: &Truth, progress: &dyn Progress) -> Result<Extent> {
+/// Extent and up direction that `surfel render` frames, so that both commands have the same default camera.
+fn extent(args: &Truth, up: Option<DVec3>, progress: &dyn Progress) -> Result<(Extent, DVec3)> {
     let input = std::slice::from_ref(&args.input);
-    let loaded = load(input, &LoadOptions::default(), &Silent(progress))?;
+    let loaded = load(input, &LoadOptions { up, ..Default::default() }, &Silent(progress))?;
     let extent = Extent::of(&loaded.model);
-    extent.ok_or_else(|| Error::Usage("the input holds no points".into()))
+    Ok((extent.ok_or_else(|| Error::Usage("the input holds no points".into()))?, loaded.up))
 }
 
 /// Traces a scene, or reads its picture from the cache; `name` is its key.

@@ -2,7 +2,7 @@
 
 mod surface;
 
-use super::args::{self, View};
+use super::args::{self, OWN, View};
 use super::files::config_folder;
 use super::progress::{self, Silent};
 use super::{camera, rasterizers, render, vulkan};
@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::time::Instant;
 use surfel::estimate::Estimate;
 use surfel::geometry::{Colours, Extent, Model};
-use surfel::load::{Colouring, Listener, LoadOptions, load, scene};
+use surfel::load::{Colouring, Listener, LoadOptions, Suggestion, Uncoloured, load, scene};
 use surfel::settings::methods::Method;
 use surfel::{Error, Progress, Result};
 
@@ -28,21 +28,19 @@ pub fn run(args: View) -> Result<()> {
         )));
     }
     let file = camera::read(&args.camera)?;
-    let up = camera::up(&args.camera, file);
     let given = {
         let args::Camera { eye, target, fov, parallel, file, .. } = &args.camera;
         eye.is_some() || target.is_some() || fov.is_some() || parallel.is_some() || file.is_some()
     };
     let (cameras, pose) = (args.camera.clone(), file.map(|(_, pose)| pose));
     let initial_camera =
-        move |extent: &Extent, size| given.then(|| camera::pose(&cameras, pose, extent, size));
+        move |extent: &Extent, up, size| given.then(|| camera::pose(&cameras, pose, extent, up, size));
     let options = viewer::Options {
         inputs: args.inputs.clone(),
         size: args.size,
         device: vulkan::options(&args.device)?,
         rasterizer: args.rasterizer,
         faster: rasterizers::read(),
-        up,
         budget: args.frame_budget,
         fov_y_deg: args.camera.fov.unwrap_or(camera::FOV),
         initial_camera: Box::new(initial_camera),
@@ -56,14 +54,18 @@ pub fn run(args: View) -> Result<()> {
         method_chosen: args.method.is_some()
             || Method::ALL.iter().any(|method| args.settings(method) != method.settings()),
     };
-    viewer::run(options, loader(&args, up)?, Box::new(move |method| args.settings(method)))
+    viewer::run(
+        options,
+        loader(&args, camera::up(&args.camera, file))?,
+        Box::new(move |method| args.settings(method)),
+    )
 }
 
 /// The function that loads inputs with the options of the arguments.
-fn loader(args: &View, up: DVec3) -> Result<viewer::Load> {
+fn loader(args: &View, up: Option<DVec3>) -> Result<viewer::Load> {
     // Errors of the options are reported before the window opens.
-    args.colours.colouring(up)?;
-    let colour_by = args.colours.color_by.as_ref().map(|by| viewer::ColourBy {
+    args.colours.colouring()?;
+    let colour_by = args.colours.color_by.as_ref().filter(|by| by.name != OWN).map(|by| viewer::ColourBy {
         name: by.name.clone(),
         map: args.colours.color_map,
         range: by.range,
@@ -73,15 +75,17 @@ fn loader(args: &View, up: DVec3) -> Result<viewer::Load> {
         estimate: args.points.estimate(),
         polygons: args.points.polygons,
         points: args.points.points,
+        uncoloured: args.colours.uncoloured(Uncoloured::Suggest),
+        up,
         texture: args.colours.texture()?,
         ..Default::default()
     };
     let reader = Reader { options, quiet: args.quiet };
-    let (method, up) = (args.method, up.normalize_or(DVec3::Y));
+    let method = args.method;
     // The triangles belong to the inputs of the command, not to files that are opened later.
     let (truth, own) = (args.truth.clone(), args.inputs.clone());
     Ok(Arc::new(move |names: &[OsString], window: &dyn viewer::LoadListener| {
-        let loaded = |model: Model| -> Result<Loaded> {
+        let loaded = |model: Model, up: DVec3| -> Result<Loaded> {
             let method = render::method(method, &model)?;
             let info = SceneInfo { names: names.iter().map(display_name).collect(), ..Default::default() };
             Ok(Loaded { colour_by: colour_by.clone(), info, up, ..Loaded::new(model, method) })
@@ -90,14 +94,17 @@ fn loader(args: &View, up: DVec3) -> Result<viewer::Load> {
         let inputs = load(names, &reader.options, &listener)?;
         let truth = truth.as_deref().filter(|_| *names == own);
         let surface = surface::of_inputs(names, truth, &reader.options, &inputs);
-        let whole = loaded(inputs.model)?;
+        let whole = loaded(inputs.model, inputs.up)?;
         // Built-in scenes have no properties to read.
         let is_scene = names.iter().any(|name| scene(name).is_some());
         let (reader, own) = (reader.clone(), names.to_vec());
         let read = move |name: &str, progress: &dyn Progress| reader.property(&own, name, progress);
         let skipped = if is_scene { vec![] } else { inputs.skipped };
+        let suggested =
+            inputs.suggestion.map(|Suggestion { name, map }| viewer::ColourBy { name, map, range: None });
         Ok(Loaded {
             surface,
+            colour_by: whole.colour_by.or(suggested),
             properties: Some(viewer::PointProperties { names: skipped, read: Arc::new(read) }),
             info: SceneInfo {
                 points: inputs.read,
@@ -118,7 +125,7 @@ fn display_name(name: &OsString) -> String {
 /// Forwards progress and previews to the window, and prints notes.
 struct WindowListener<'a> {
     window: &'a dyn viewer::LoadListener,
-    loaded: &'a (dyn Fn(Model) -> Result<Loaded> + Sync),
+    loaded: &'a (dyn Fn(Model, DVec3) -> Result<Loaded> + Sync),
     quiet: bool,
 }
 
@@ -144,8 +151,8 @@ impl Listener for WindowListener<'_> {
     }
 
     /// Forwards the preview. An error of it is one of the whole scene, too, which reports it.
-    fn preview(&self, model: Model) {
-        (self.loaded)(model).into_iter().for_each(|preview| self.window.preview(preview));
+    fn preview(&self, model: Model, up: DVec3) {
+        (self.loaded)(model, up).into_iter().for_each(|preview| self.window.preview(preview));
     }
 }
 
@@ -208,7 +215,7 @@ mod tests {
         let input = [input.into()];
         let command = ["surfel", "view", "-q", "x.ply"];
         let Command::View(args) = Surfel::try_parse_from(command).unwrap().command else { panic!("no view") };
-        loader(&args, DVec3::Y)?(&input, window)
+        loader(&args, None)?(&input, window)
     }
 
     #[test]
@@ -259,7 +266,7 @@ mod tests {
         }
         let command = ["surfel", "view", "-q", "--color-by", "heat", "--color-map", "magma", "x.ply"];
         let Command::View(args) = Surfel::try_parse_from(command).unwrap().command else { panic!("no view") };
-        let load = loader(&args, DVec3::Y).unwrap();
+        let load = loader(&args, None).unwrap();
         for inputs in [&names[..1], &names[..]] {
             let loaded = load(inputs, &Window::default()).unwrap();
             let by = loaded.colour_by.unwrap();

@@ -7,7 +7,7 @@ use super::sites::Sites;
 use super::{Estimate, MARGIN};
 use crate::Progress;
 use crate::error::Result;
-use crate::geometry::{Ellipse, Surfels, View};
+use crate::geometry::{Ellipse, Surfels, View, usual_extent};
 use glam::Vec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -19,6 +19,11 @@ const LARGEST_BESIDE: f32 = 3.0;
 /// Largest ratio of a disc's radius to the 99th percentile of all radii, twice that on flat ground: a few isolated points would fill empty
 /// space.
 const LARGEST_OVERALL: f32 = 2.0;
+/// Largest ratio to the median of all radii: where the neighbours are no surface, as in a line of a lidar scan, and where they are. Such discs
+/// show sparse points as points; larger ones would be heaps of platters.
+const LARGEST_SPARSE: [f32; 2] = [1.5, 4.0];
+/// Radius, as a part of the cloud's diagonal, that discs on a surface may have in any case: the far walls of a room stay closed.
+const LARGEST_PART: f32 = 0.002;
 /// Number of sites per task.
 const PIECE: usize = 1 << 12;
 
@@ -188,15 +193,26 @@ fn radii(surfels: &Surfels, sites: &Sites, survey: &Survey) -> Vec<f32> {
         }
     }
     let most = LARGEST_OVERALL * tail(reaches.clone());
+    let middle = median(reaches.clone());
+    let sparse = (LARGEST_SPARSE[1] * middle).max(LARGEST_PART * usual_extent(&surfels.positions).length());
     let mut radii = vec![0.0; sites.len()];
     for (site, patch, near) in survey.each() {
         let mut around = [0.0; EDGES];
         around.iter_mut().zip(near).for_each(|(reach, &other)| *reach = reaches[other as usize]);
-        let (_, middle, _) = around.select_nth_unstable_by(EDGES / 2, f32::total_cmp);
+        let (_, beside, _) = around.select_nth_unstable_by(EDGES / 2, f32::total_cmp);
         radii[site as usize] = MARGIN as f32
-            * reaches[site as usize].min(LARGEST_BESIDE * *middle).min(most * (1.0 + patch.flatness));
+            * reaches[site as usize]
+                .min(LARGEST_BESIDE * *beside)
+                .min(most * (1.0 + patch.flatness))
+                .min(if patch.is_surface { sparse } else { LARGEST_SPARSE[0] * middle });
     }
     radii
+}
+
+/// The median of `values`; 0 if there are none.
+fn median(mut values: Vec<f32>) -> f32 {
+    let index = values.len() / 2;
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(index, f32::total_cmp).1 }
 }
 
 /// The 99th percentile of `values`.

@@ -15,6 +15,8 @@ pub(super) struct Patch {
     pub reach: f32,
     /// From 0, the neighbours are not in a plane, to 1, they are.
     pub flatness: f32,
+    /// Whether the neighbours lie in a plane and surround the site, so that they are a surface there.
+    pub is_surface: bool,
     /// The ellipse that covers the region.
     pub ellipse: Option<Ellipse>,
 }
@@ -104,6 +106,7 @@ impl<'a> Surveyor<'a> {
             normal: plane.normal.as_vec3(),
             reach: self.cell.reach(&self.flat) as f32,
             flatness: plane.flatness() as f32,
+            is_surface: !self.cell.is_open(&self.flat) && !plane.is_line() && plane.thickness() < THICK,
             ellipse: None,
         };
         if self.elliptical {

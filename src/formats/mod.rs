@@ -30,6 +30,7 @@ mod sniff;
 mod source;
 mod table;
 mod text;
+mod up;
 
 pub use reader::{Inspected, Loaded, ReadOptions, extensions, inspect, read, read_bytes};
 pub use report::{Dropped, Faces, Lines, Report};

@@ -67,12 +67,26 @@ pub struct Loaded {
 pub struct ReadOptions {
     /// Name of the point property that becomes [`Cloud::scalar`]. A file without such a property is an error.
     pub scalar: Option<String>,
-    /// Names of the columns of a text file, in place of its own.
+    /// Whether the intensity becomes [`Cloud::scalar`] if no other property does and the file has one.
+    pub intensity: bool,
+    /// Names of the columns of a text file, instead of its own.
     pub columns: Option<Vec<String>>,
     /// Whether triangles are kept even if every point has a normal and a radius.
     pub triangles: bool,
     /// Texture, in place of the one that the file names.
     pub texture: Option<Arc<MipMap>>,
+}
+
+/// Names of the intensity.
+const INTENSITY: [&str; 4] = ["intensity", "Intensity", "scalar_intensity", "scalar_Intensity"];
+
+impl ReadOptions {
+    /// The property of the points that becomes [`Cloud::scalar`].
+    pub(super) fn chosen(&self, points: &Element) -> Option<&str> {
+        let has = |name: &&str| points.properties.iter().any(|property| property.name == **name);
+        let intensity = || INTENSITY.into_iter().find(has).filter(|_| self.intensity);
+        self.scalar.as_deref().or_else(intensity)
+    }
 }
 
 /// The declarations of a file, and its points if they can be read.

@@ -11,8 +11,12 @@ pub struct Report {
     pub encoding: Encoding,
     /// Facts that only this format tells, by name: its version, the coordinate system, where the points come from.
     pub details: Vec<(String, String)>,
+    /// Whether z is up in all files of this format.
+    pub z_up: bool,
     /// All declared elements, in order.
     pub elements: Vec<Element>,
+    /// Name of the property that is [`Cloud::scalar`](crate::geometry::Cloud::scalar).
+    pub scalar: Option<String>,
     /// Used vertex properties, in file order.
     pub understood: Vec<String>,
     /// Unused vertex properties, in file order.
@@ -53,6 +57,8 @@ impl Report {
         Self {
             encoding,
             details: Vec::new(),
+            z_up: false,
+            scalar: layout.scalar_of(element).map(str::to_owned),
             elements: vec![element.clone()],
             understood: names(true),
             skipped: names(false),

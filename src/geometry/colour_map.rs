@@ -31,7 +31,12 @@ pub enum ColourMap {
     Plasma,
     /// A rainbow: most distinct colours; lightness rises and falls.
     Turbo,
+    /// Dark grey to white.
+    Grey,
 }
+
+/// Code of the first colour of `Grey`: black would not be seen on black.
+const DARK: f64 = 48.0;
 
 /// Colour of NaN and infinity.
 const NONE: [u8; 3] = [128; 3];
@@ -67,6 +72,7 @@ impl ColourMap {
             Self::Inferno => colorous::INFERNO,
             Self::Plasma => colorous::PLASMA,
             Self::Turbo => colorous::TURBO,
+            Self::Grey => return [(DARK + (255.0 - DARK) * share.clamp(0.0, 1.0)).round() as u8; 3],
         };
         gradient.eval_continuous(share.clamp(0.0, 1.0)).as_array()
     }
@@ -122,7 +128,9 @@ mod tests {
         assert_eq!([9.0, 10.0, -f64::MAX].map(|value| SCALE.at(value)), [first; 3]);
         assert_eq!([20.0, 21.0, f64::MAX].map(|value| SCALE.at(value)), [last; 3]);
         assert_ne!(SCALE.at(15.0), SCALE.at(16.0));
-        for map in [ColourMap::Cividis, ColourMap::Magma, ColourMap::Inferno, ColourMap::Plasma] {
+        for map in
+            [ColourMap::Cividis, ColourMap::Magma, ColourMap::Inferno, ColourMap::Plasma, ColourMap::Grey]
+        {
             let light = |share| map.at(share).iter().map(|&code| u32::from(code)).sum::<u32>();
             assert!(light(0.0) < light(0.5) && light(0.5) < light(1.0), "{map:?}");
         }

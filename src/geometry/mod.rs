@@ -26,6 +26,7 @@ mod valid;
 mod weights;
 
 pub use bounds::Bounds;
+pub(crate) use bounds::usual_extent;
 pub use camera::{Camera, Projection};
 pub use clips::{Clip, ClipLine, Clips};
 pub use cloud::{Cloud, View};

@@ -25,6 +25,8 @@ enum Source {
     Values,
     /// A geometric quantity of the surfels.
     Quantity(Quantity),
+    /// The coordinate along the up direction.
+    Height,
     /// The surfels' normals.
     Normal,
 }
@@ -39,18 +41,18 @@ pub struct Coloured {
 }
 
 impl Colouring {
-    /// Colours by `x`, `y`, `z`, `height` (along `up`, of any length), `radius` or `normal` of the surfels, or by the property of the files of any
+    /// Colours by `x`, `y`, `z`, `height` (along the up direction), `radius` or `normal` of the surfels, or by the property of the files of any
     /// other name. The range defaults to the 1st to the 99th percentile.
     ///
     /// # Errors
     /// [`Error::Usage`] if a range is given for normals, which have no values.
-    pub fn new(name: &str, range: Option<ValueRange>, map: ColourMap, up: DVec3) -> Result<Self> {
+    pub fn new(name: &str, range: Option<ValueRange>, map: ColourMap) -> Result<Self> {
         let along = |axis| Source::Quantity(Quantity::Along(axis));
         let source = match name {
             "x" => along(DVec3::X),
             "y" => along(DVec3::Y),
             "z" => along(DVec3::Z),
-            "height" => along(up.normalize_or(DVec3::Y)),
+            "height" => Source::Height,
             "radius" => Source::Quantity(Quantity::Radius),
             "normal" => Source::Normal,
             _ => Source::Property,
@@ -76,7 +78,7 @@ impl Colouring {
     /// The property to read from the files.
     pub fn property(&self) -> Option<&str> {
         match self.source {
-            Source::Quantity(_) | Source::Normal => None,
+            Source::Quantity(_) | Source::Height | Source::Normal => None,
             _ => Some(self.name.as_str()),
         }
     }
@@ -105,25 +107,30 @@ impl Colouring {
     }
 
     /// Colours surfels and vertices by a geometric quantity or by normals; `None` if the colours come from the files.
-    pub(super) fn colour_model(&self, model: &mut Model, listener: &dyn Listener) -> Option<Coloured> {
+    pub(super) fn colour_model(
+        &self,
+        model: &mut Model,
+        up: DVec3,
+        listener: &dyn Listener,
+    ) -> Option<Coloured> {
         let Model { surfels, primitives } = model;
-        match self.source {
-            Source::Property | Source::Values => None,
+        let quantity = match self.source {
+            Source::Property | Source::Values => return None,
             Source::Normal => {
                 surfels.colour_by_normals();
                 primitives.colour_by_directions();
-                Some(Coloured { name: self.name.clone(), scale: None })
+                return Some(Coloured { name: self.name.clone(), scale: None });
             }
-            Source::Quantity(quantity) => {
-                let [of_surfels, of_lines] = [surfels.values(quantity), primitives.values(quantity)];
-                let both = of_surfels.iter().chain(&of_lines).copied();
-                let coloured = self.scale(both, (of_surfels.len() + of_lines.len()) as u64, listener);
-                let scale = coloured.scale_or_grey(self.map);
-                surfels.colour_by_values(&of_surfels, &scale);
-                primitives.colour_by_values(&of_lines, &scale);
-                Some(coloured)
-            }
-        }
+            Source::Height => Quantity::Along(up),
+            Source::Quantity(quantity) => quantity,
+        };
+        let [of_surfels, of_lines] = [surfels.values(quantity), primitives.values(quantity)];
+        let both = of_surfels.iter().chain(&of_lines).copied();
+        let coloured = self.scale(both, (of_surfels.len() + of_lines.len()) as u64, listener);
+        let scale = coloured.scale_or_grey(self.map);
+        surfels.colour_by_values(&of_surfels, &scale);
+        primitives.colour_by_values(&of_lines, &scale);
+        Some(coloured)
     }
 
     /// The colour scale of `count` values. Notes its range, and points without a value, for the user.

@@ -4,8 +4,10 @@
 //! merged.
 
 mod colouring;
+mod suggestion;
 
 pub use colouring::{Coloured, Colouring};
+pub use suggestion::{Suggestion, Uncoloured};
 
 use crate::estimate::{Estimate, Estimated};
 use crate::formats::{self, Dropped, Faces, Lines, Loaded, ReadOptions, Report};
@@ -14,7 +16,7 @@ use crate::settings::Settings;
 #[cfg(feature = "scenes")]
 use crate::verify::scenes;
 use crate::{Error, Progress, Result};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use std::ffi::OsStr;
 use std::path::Path;
 use std::sync::Arc;
@@ -26,7 +28,7 @@ pub struct LoadOptions {
     pub estimate: Estimate,
     /// Whether faces are rendered as triangles; those of a file with lines always are.
     pub polygons: bool,
-    /// Names of the columns of text files, in place of their own.
+    /// Names of the columns of text files, instead of their own.
     pub columns: Option<Vec<String>>,
     /// How faces are converted to lines; `None` keeps them.
     pub lines: Option<ToLines>,
@@ -38,6 +40,10 @@ pub struct LoadOptions {
     pub voxel: Option<f64>,
     /// What the points are coloured by; `None` for their own colours.
     pub colouring: Option<Colouring>,
+    /// What happens to bare points without colours if `colouring` is `None`.
+    pub uncoloured: Uncoloured,
+    /// The up direction, of any length; `None` for that of the first input.
+    pub up: Option<DVec3>,
     /// Texture of the files' texture coordinates, instead of the one that they name.
     pub texture: Option<Arc<MipMap>>,
 }
@@ -52,8 +58,8 @@ pub trait Listener: Progress {
         false
     }
 
-    /// Receives a preview, some of many points, as soon as these are read.
-    fn preview(&self, _model: Model) {}
+    /// Receives a preview, some of many points, as soon as these are read, and the up direction.
+    fn preview(&self, _model: Model, _up: DVec3) {}
 }
 
 /// Ignores notes and previews.
@@ -75,8 +81,13 @@ pub struct LoadedModel {
     pub dropped: Dropped,
     /// Where normals and radii come from.
     pub estimated: Estimated,
+    /// The up direction, a unit vector: the requested one, or z for formats of surveying and for wide, flat points without normals and faces,
+    /// otherwise y.
+    pub up: DVec3,
     /// What the points were coloured by; `None` for their own colours.
     pub coloured: Option<Coloured>,
+    /// What they can be coloured by, if it is requested and they have no colours.
+    pub suggestion: Option<Suggestion>,
     /// Names of the files' properties that are not used.
     pub skipped: Vec<String>,
     /// Number of faces of each input, rendered or not.
@@ -95,6 +106,10 @@ struct Part {
     cloud: Cloud,
     /// Whether its faces are rendered, whatever the options say.
     draws_faces: bool,
+    /// The up direction of its coordinates.
+    up: DVec3,
+    /// Name of the property that is its scalar.
+    scalar: Option<String>,
 }
 
 /// Loads inputs, paths of files or names of built-in scenes, as one model.
@@ -132,21 +147,29 @@ impl Load<'_> {
         if let Some(voxel) = self.options.voxel {
             parts = vec![self.thin(parts, voxel)?];
         }
-        let colouring = self.options.colouring.as_ref();
+        let own = parts.first().map_or(DVec3::Y, |part| part.up);
+        let up = self.options.up.and_then(DVec3::try_normalize).unwrap_or(own);
+        let suggestion = self.suggestion(&mut parts);
+        let applied = suggestion.as_ref().filter(|_| self.options.uncoloured == Uncoloured::Colour);
+        let suggested = applied.map(Suggestion::colouring).transpose()?;
+        let colouring = self.options.colouring.as_ref().or(suggested.as_ref());
         let by_property = colouring.filter(|colouring| colouring.property().is_some());
         let coloured = by_property.map(|colouring| {
             let mut clouds: Vec<_> = parts.iter_mut().map(|part| &mut part.cloud).collect();
             colouring.colour_clouds(&mut clouds, self.listener)
         });
         if self.listener.wants_preview() {
-            self.preview(&parts).into_iter().for_each(|preview| self.listener.preview(preview));
+            self.preview(&parts, colouring, up)
+                .into_iter()
+                .for_each(|preview| self.listener.preview(preview, up));
         }
         let (model, estimated) = self.merge(parts)?;
         skipped.sort();
         skipped.dedup();
-        let mut loaded = LoadedModel { model, read, dropped, estimated, coloured, skipped, faces };
+        let mut loaded =
+            LoadedModel { model, read, dropped, estimated, up, coloured, suggestion, skipped, faces };
         if let (Some(colouring), None) = (colouring, &loaded.coloured) {
-            loaded.coloured = colouring.colour_model(&mut loaded.model, self.listener);
+            loaded.coloured = colouring.colour_model(&mut loaded.model, up, self.listener);
         }
         Ok(loaded)
     }
@@ -154,6 +177,22 @@ impl Load<'_> {
     /// The property that is read from files.
     fn property(&self) -> Option<&str> {
         self.options.colouring.as_ref().and_then(Colouring::property)
+    }
+
+    /// What bare points can be coloured by. Scalars that are not needed for it are dropped.
+    fn suggestion(&self, parts: &mut [Part]) -> Option<Suggestion> {
+        if self.options.colouring.is_some() || self.options.uncoloured == Uncoloured::Plain {
+            return None;
+        }
+        let found = Suggestion::of(parts);
+        let is_used = self.options.uncoloured == Uncoloured::Colour
+            && found
+                .as_ref()
+                .is_some_and(|found| parts.iter().all(|part| part.scalar.as_ref() == Some(&found.name)));
+        if !is_used {
+            parts.iter_mut().for_each(|part| part.cloud.scalar = None);
+        }
+        found
     }
 
     /// Fails if built-in scenes, which have no properties, should be coloured by one.
@@ -182,19 +221,26 @@ impl Load<'_> {
         #[cfg(feature = "scenes")]
         if let Some(name) = scene(input) {
             let cloud = scene_cloud(name)?;
-            return Ok((Part { name: name.into(), cloud, draws_faces: true }, None));
+            return Ok((
+                Part { name: name.into(), cloud, draws_faces: true, up: DVec3::Y, scalar: None },
+                None,
+            ));
         }
         let options = ReadOptions {
             scalar: self.property().map(str::to_owned),
+            intensity: self.options.uncoloured != Uncoloured::Plain,
             columns: self.options.columns.clone(),
             triangles: self.draws_faces(),
             texture: self.options.texture.clone(),
         };
-        let Loaded { cloud, report } = formats::read(Path::new(input), &options, self.listener)?;
+        let loaded = formats::read(Path::new(input), &options, self.listener)?;
+        let up = loaded.up();
+        let Loaded { cloud, report } = loaded;
+        let scalar = report.scalar.clone();
         let name = Path::new(input).display().to_string();
         warn(&name, &report);
         let cloud = self.options.points.map(|points| cloud.some(points as usize)).unwrap_or(cloud);
-        Ok((Part { name, cloud, draws_faces: false }, Some(report)))
+        Ok((Part { name, cloud, draws_faces: false, up, scalar }, Some(report)))
     }
 
     /// Merges all parts, with one point per voxel.
@@ -204,12 +250,13 @@ impl Load<'_> {
             several => format!("{} inputs", several.len()),
         };
         let draws_faces = parts.iter().any(|part| part.draws_faces);
+        let (up, scalar) = parts.first().map_or((DVec3::Y, None), |part| (part.up, part.scalar.clone()));
         let clouds = parts.into_iter().map(|part| part.cloud).collect();
         let all = Cloud::merge(clouds, Settings::default().lighting.albedo)?;
         let before = all.len();
         let cloud = all.thin(voxel).map_err(|error| error.in_input(name.as_str()))?;
         self.listener.note(&format!("{name}: {before} points thinned to {}", cloud.len()));
-        Ok(Part { name, cloud, draws_faces })
+        Ok(Part { name, cloud, draws_faces, up, scalar })
     }
 
     /// Estimates each part and merges all to one model.
@@ -235,7 +282,7 @@ impl Load<'_> {
     }
 
     /// A preview of some points with their own normals and radii; `None` for few points, and if lines or faces are rendered.
-    fn preview(&self, parts: &[Part]) -> Option<Model> {
+    fn preview(&self, parts: &[Part], colouring: Option<&Colouring>, up: DVec3) -> Option<Model> {
         let all: usize = parts.iter().map(|part| part.cloud.len()).sum();
         let faces = |part: &Part| {
             part.cloud.has_lines()
@@ -250,16 +297,15 @@ impl Load<'_> {
         let how = Estimate { outlines: false, outliers: None, sharp: None, ..self.options.estimate.clone() };
         // Estimation may fail for few points and succeed for all: then there is no preview.
         let (mut model, _) = cloud.into_model(false, &how, &()).ok()?;
-        let colouring = self.options.colouring.as_ref();
         if let Some(colouring) = colouring.filter(|colouring| colouring.property().is_none()) {
-            colouring.colour_model(&mut model, &());
+            colouring.colour_model(&mut model, up, &());
         }
         Some(model)
     }
 
     /// Estimates the model of a part.
     fn estimate(&self, part: Part) -> Result<(Model, Estimated)> {
-        let Part { name, cloud, draws_faces } = part;
+        let Part { name, cloud, draws_faces, .. } = part;
         let cloud = match &self.options.lines {
             Some(how) => self.to_lines(&name, &cloud, how)?,
             None => cloud,

@@ -66,8 +66,6 @@ pub struct Options {
     pub rasterizer: Option<Rasterizer>,
     /// The faster rasterizers of devices.
     pub faster: FasterRasterizers,
-    /// Up direction of the world, of any length; the nearest axis is taken.
-    pub up: DVec3,
     /// Time budget of a frame while the camera moves, ms.
     pub budget: f64,
     /// Vertical angle of view, unless the camera has its own, degrees.
@@ -107,7 +105,7 @@ pub struct Loaded {
     pub method: Method,
     /// Information for the user.
     pub info: SceneInfo,
-    /// Up direction of the world, a unit vector.
+    /// Up direction of the world, a unit vector; the camera takes the nearest axis.
     pub up: DVec3,
 }
 
@@ -138,7 +136,7 @@ pub struct ColourBy {
 }
 
 /// Makes the first camera for the extent of a scene and a picture of this width and height, px; `None` frames the whole scene.
-pub type InitialCamera = Box<dyn Fn(&Extent, [u32; 2]) -> Option<Result<Pose>>>;
+pub type InitialCamera = Box<dyn Fn(&Extent, DVec3, [u32; 2]) -> Option<Result<Pose>>>;
 
 /// Properties of points that the scene itself does not use, for colours to show.
 #[derive(Clone)]

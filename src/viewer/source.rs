@@ -94,6 +94,11 @@ impl Source {
         self.set_attribute(attribute, range);
     }
 
+    /// The up direction of the world, a unit vector.
+    pub fn up(&self) -> DVec3 {
+        self.up
+    }
+
     /// What a camera frames.
     pub fn extent(&self) -> &Extent {
         &self.extent

@@ -54,7 +54,7 @@ impl ViewState {
         let viewport = Viewport { size: options.size, fov_y_deg: options.fov_y_deg, parallel: false };
         Self {
             viewport,
-            up: nearest_axis(options.up),
+            up: nearest_axis(DVec3::Y),
             method_settings,
             rasterizer: options.rasterizer.into(),
             saved,
@@ -75,6 +75,12 @@ impl ViewState {
         (method, mut source): (Method, Source),
         origin: SceneOrigin,
     ) {
+        // A scene after its preview, and a reloaded one, keep what the user has chosen.
+        let is_new =
+            !origin.reload && self.view.as_ref().is_none_or(|view| view.origin != origin.of_preview());
+        if is_new {
+            self.up = nearest_axis(source.up());
+        }
         let framed = Orbit::framing(source.extent(), self.up, &self.viewport);
         let given = None;
         let lost = self.lost.take().map(|(method, settings, appearance)| {
@@ -339,10 +345,9 @@ mod tests {
             device: DeviceOptions::default(),
             rasterizer: None,
             faster: FasterRasterizers::default(),
-            up: DVec3::Y,
             budget: 60.0,
             fov_y_deg: 45.0,
-            initial_camera: Box::new(|_, _| None),
+            initial_camera: Box::new(|_, _, _| None),
             watch: false,
             events: Events::new(Instant::now(), false),
             save_folder: SaveFolder { path: ".".into(), print_names: false },

@@ -9,7 +9,7 @@ const GOOD: &str = "0 0 0 0 0 1 1";
 fn unusable_inputs_exit_with_1_at_once() {
     let cases: [(&str, Vec<u8>, &str); 8] = [
         ("empty.ply", Vec::new(), "the file is empty"),
-        ("text.ply", b"hello, points\n".to_vec(), "not a PLY file"),
+        ("text.ply", b"hello, points\n".to_vec(), "not a point cloud that can be read"),
         ("truncated.ply", surfels(&[GOOD, GOOD]).replace("vertex 2", "vertex 3").into(), "vertex"),
         ("cut_header.ply", surfels(&[GOOD])[..40].into(), "header"),
         ("none.ply", surfels(&[]).into(), "it has no points"),

@@ -7,6 +7,7 @@ mod colours;
 mod compare;
 mod convert;
 mod errors;
+mod formats;
 mod guide;
 mod info;
 mod inputs;

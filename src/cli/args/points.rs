@@ -2,14 +2,13 @@
 
 use crate::cli::values::{ColourBy, choice, colour_by, positive};
 use clap::Args;
-use glam::DVec3;
 use std::path::PathBuf;
 use std::sync::Arc;
 use surfel::Result;
 use surfel::estimate::{Estimate, MeshSampling};
 use surfel::formats::image;
 use surfel::geometry::{ColourMap, MipMap};
-use surfel::load::Colouring;
+use surfel::load::{Colouring, Uncoloured};
 use surfel::settings::Choice;
 
 /// How normals and radii are estimated.
@@ -69,10 +68,14 @@ impl Points {
     }
 }
 
+/// Name of the files' own colours.
+pub const OWN: &str = "file";
+
 /// What points are coloured by, instead of by their own colours.
 #[derive(Args, Debug)]
 pub struct Colours {
-    /// Colours by x, y, z, height, radius or normal, or by a property of the files such as intensity
+    /// Colours by x, y, z, height, radius or normal, by a property of the files such as intensity, or by the file's own colours [default: file,
+    /// or for bare points without colours intensity, or height where z is up]
     ///
     /// The range is MIN,MAX; by default from the 1st to the 99th percentile.
     #[arg(long, alias = "colour-by", value_name = "NAME[:MIN,MAX]", value_parser = colour_by)]
@@ -93,13 +96,18 @@ pub struct Colours {
 }
 
 impl Colours {
-    /// What points are coloured by; `None` for their own colours. `up` need not be of unit length.
+    /// What happens to points without colours.
+    pub fn uncoloured(&self, then: Uncoloured) -> Uncoloured {
+        if self.color_by.is_some() { Uncoloured::Plain } else { then }
+    }
+
+    /// What points are coloured by; `None` for their own colours.
     ///
     /// # Errors
     /// [`surfel::Error::Usage`] if a range is given for normals, which have no values.
-    pub fn colouring(&self, up: DVec3) -> Result<Option<Colouring>> {
-        let by = self.color_by.as_ref();
-        by.map(|by| Colouring::new(&by.name, by.range, self.color_map, up)).transpose()
+    pub fn colouring(&self) -> Result<Option<Colouring>> {
+        let by = self.color_by.as_ref().filter(|by| by.name != OWN);
+        by.map(|by| Colouring::new(&by.name, by.range, self.color_map)).transpose()
     }
 
     /// Reads the texture, if one is given.

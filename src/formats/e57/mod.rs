@@ -68,7 +68,7 @@ impl Reader for E57 {
             Err(Cause::from("it has no scan with points: give a file with at least one"))
         };
         let loaded =
-            some.and_then(|()| Layout::of(&element, options.scalar.as_deref(), false)).and_then(|layout| {
+            some.and_then(|()| Layout::of(&element, options.chosen(&element), false)).and_then(|layout| {
                 refuse_lie(&clouds, source.size())?;
                 let (arrays, tally) = {
                     let mut arrays = Arrays::new(count, &layout)?;
@@ -94,6 +94,7 @@ impl Reader for E57 {
                 let view = view(&clouds, points.cloud.origin);
                 let report = Report {
                     details: details(&file, &clouds),
+                    z_up: true,
                     ..Report::of_points(Encoding::Compressed, &element, &layout, &points)
                 };
                 Ok(Loaded { cloud: Cloud { view, ..points.cloud }, report })

@@ -245,7 +245,7 @@ impl<'a> Scan<'a> {
     fn point(&self, point: &RawValues, row: &mut [f64]) -> Parsed<()> {
         let number =
             |index: usize| point[index].to_f64(&self.cloud.prototype[index].data_type).map_err(cause);
-        let position = self.position(&number)?;
+        let position = self.position(number)?;
         for (to, (_, value)) in row.iter_mut().zip(&self.used) {
             *to = match *value {
                 Value::Axis(axis) => position[axis],

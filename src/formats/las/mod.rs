@@ -61,7 +61,7 @@ impl Reader for Las {
         };
         let encoding =
             if header.format.is_compressed { Encoding::Compressed } else { Encoding::BinaryLittleEndian };
-        let loaded = Layout::of(&element, options.scalar.as_deref(), false).and_then(|layout| {
+        let loaded = Layout::of(&element, options.chosen(&element), false).and_then(|layout| {
             let table =
                 read::Table { input, header: &header, fields: &fields, element: &element, layout: &layout };
             load(&table, encoding, progress)
@@ -77,6 +77,7 @@ fn load(table: &read::Table, encoding: Encoding, progress: &dyn Progress) -> Par
     let points = Points::new(arrays, tally)?;
     let report = Report {
         details: details::of(table.header),
+        z_up: true,
         ..Report::of_points(encoding, table.element, table.layout, &points)
     };
     let cloud = Cloud { colours: points.cloud.colours.and_then(colours), ..points.cloud };

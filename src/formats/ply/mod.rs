@@ -121,7 +121,8 @@ fn parse_records(
     header::refuse_duplicates(&header.elements)?;
     let vertex = elements::find_vertex(&header.elements)?;
     let lines = header.elements.iter().any(|element| element.count > 0 && lines::ends(element).is_some());
-    let mut layout = Layout::of(&header.elements[vertex], options.scalar.as_deref(), lines)?;
+    let vertices = &header.elements[vertex];
+    let mut layout = Layout::of(vertices, options.chosen(vertices), lines)?;
     if header.elements.iter().any(|element| materials::Columns::of(element).is_some()) {
         layout.find_materials(&header.elements[vertex]);
     }

@@ -165,6 +165,12 @@ impl Layout {
         }
     }
 
+    /// Name of the property in the scalar's column.
+    pub fn scalar_of<'a>(&self, element: &'a Element) -> Option<&'a str> {
+        let property = element.properties.get(self.columns[SCALAR]?)?;
+        Some(&property.name)
+    }
+
     /// Whether a property fills the column.
     pub fn fills(&self, column: usize) -> bool {
         self.columns[column].is_some()

@@ -69,7 +69,7 @@ fn names(beginning: &[u8]) -> Option<Names> {
     for (line, next) in beginning.split_inclusive(|byte| *byte == b'\n').zip(2..) {
         end += line.len();
         let line = line.trim_ascii();
-        let names: Vec<String> = cells(comment(line).unwrap_or(line)).map(|cell| name(cell)).collect();
+        let names: Vec<String> = cells(comment(line).unwrap_or(line)).map(name).collect();
         if ["x", "y", "z"].iter().all(|axis| names.iter().any(|name| name == axis)) {
             return Some(Names { names, end, next });
         }
@@ -91,7 +91,7 @@ fn name(cell: &[u8]) -> String {
 }
 
 impl Head {
-    /// Finds the columns; `given` are names in place of the file's. Values that can be colours or normals are what is preferred.
+    /// Finds the columns; `given` are names instead of the file's. Values that can be colours or normals are what is preferred.
     pub fn of(beginning: &[u8], given: Option<&[String]>, prefers_colours: bool) -> Parsed<Self> {
         let line = names(beginning);
         let (start, number) = line.as_ref().map_or((0, 1), |line| (line.end, line.next));

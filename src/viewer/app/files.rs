@@ -27,7 +27,8 @@ impl App {
         let moved = self.state.has_moved_preview(origin.load);
         self.is_first &= self.state.orbit_mut().is_none() || self.state.is_preview();
         let size = self.state.viewport.size;
-        let initial = (self.options.initial_camera)(loaded.1.extent(), size).filter(|_| self.is_first);
+        let initial =
+            (self.options.initial_camera)(loaded.1.extent(), loaded.1.up(), size).filter(|_| self.is_first);
         let next = if origin.preview { self.next_pose } else { self.next_pose.take() };
         let pose = next.map(Ok).or(initial).filter(|_| !moved).transpose()?;
         if let Some(pose) = &pose {

@@ -1,0 +1,106 @@
+//! Formats other than PLY, and what their points look like without options, tested with the reference, which needs no device.
+
+use crate::program::Program;
+
+/// A camera from above whose picture is 4 units high at the origin.
+const ABOVE: &str =
+    "--reference --size 40x40 --eye 0,0,5 --target 0,0,0 --fov 43.6028 --alpha mask --shading color";
+
+/// Points of a plane at z = 0, `columns` of each.
+fn plane(columns: impl Fn(i32, i32) -> String) -> String {
+    let rows = (-10..=10).flat_map(|y| (-10..=10).map(move |x| (x, y)));
+    rows.map(|(x, y)| format!("{} {} 0 {}\n", f64::from(x) / 10.0, f64::from(y) / 10.0, columns(x, y)))
+        .collect()
+}
+
+fn sample(name: &str) -> String {
+    format!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/formats/{}"), name)
+}
+
+#[test]
+fn every_format_becomes_a_picture() {
+    let program = Program::new();
+    for name in ["format3.las", "format7.laz", "scans.e57", "binary.pcd", "compressed.pcd", "open3d.pts"] {
+        let run = program.run(&format!("render {} -o out.png --reference --size 32x32", sample(name)));
+        run.text();
+        assert!(program.png("out.png").pixels().any(|pixel| pixel[3] > 0), "{name}");
+    }
+}
+
+#[test]
+fn bare_points_have_the_colours_of_their_intensity_unless_those_of_the_file_are_asked_for() {
+    let program = Program::new();
+    program.write("a.xyz", plane(|x, _| x.to_string()));
+    let colours = |arguments: &str| {
+        let run = program.run(&format!("render a.xyz -o out.png {ABOVE} {arguments}"));
+        run.text();
+        let picture = program.png("out.png");
+        ([12, 20, 28].map(|x| picture.get_pixel(x, 20).0), run.err)
+    };
+    let (grey, text) = colours("");
+    assert!(grey.iter().all(|[r, g, b, _]| r == g && g == b), "{grey:?}");
+    assert!(grey[0][0] < grey[1][0] && grey[1][0] < grey[2][0], "{grey:?}");
+    assert!(
+        text.contains("a.xyz: no colours, so coloured by intensity: --color-by file leaves the points plain"),
+        "{text}"
+    );
+    let (plain, text) = colours("--color-by file");
+    assert!(plain[0] == plain[1] && plain[1] == plain[2] && !text.contains("intensity"), "{plain:?} {text}");
+    let (viridis, _) = colours("--color-by intensity");
+    assert!(viridis[0] != grey[0] && viridis[2] != grey[2]);
+    // Without another column there is only the height, and equal intensities tell nothing.
+    for row in ["", "7"] {
+        program.write("a.xyz", plane(|_, _| row.into()));
+        let (_, text) = colours("");
+        assert!(text.contains("coloured by height"), "{text}");
+    }
+    // Colours of the file stay.
+    program.write("a.xyz", plane(|_, _| "200 0 0".into()));
+    assert_eq!(colours("").0[1], [200, 0, 0, 255]);
+}
+
+#[test]
+fn z_is_up_for_surveys_and_a_line_says_so() {
+    let program = Program::new();
+    program.write("a.xyz", plane(|_, _| String::new()));
+    let said = |arguments: &str| {
+        let run = program.run(&format!("render {arguments} -o out.png --reference --size 16x16"));
+        run.text();
+        run.err.contains("z is up")
+    };
+    assert!(said("a.xyz") && !said("a.xyz --up 0,1,0") && !said("a.xyz --quiet"));
+    assert!(said(&sample("format1.las")) && said(&sample("scans.e57")) && !said(&sample("binary.pcd")));
+    // From straight above, y is up in the picture.
+    program.write("a.xyz", plane(|x, y| if x == 0 && y == 10 { "200 0 0".into() } else { "0 200 0".into() }));
+    program.run(&format!("render a.xyz -o out.png {ABOVE}")).text();
+    let picture = program.png("out.png");
+    let top =
+        (0..40).flat_map(|x| (0..20).map(move |y| (x, y))).any(|(x, y)| picture.get_pixel(x, y).0[0] > 100);
+    let bottom =
+        (0..40).flat_map(|x| (20..40).map(move |y| (x, y))).any(|(x, y)| picture.get_pixel(x, y).0[0] > 100);
+    assert!(top && !bottom);
+}
+
+#[test]
+fn what_a_file_states_is_printed() {
+    let program = Program::new();
+    let run = program.run(&format!("info {}", sample("format7.laz")));
+    for line in
+        ["version: 1.4", "scale: 0.001 0.001 0.0005", "points by return: 12 12 12 12 12", "element point: 60"]
+    {
+        assert!(run.text().lines().any(|have| have == line), "no `{line}` in\n{}", run.text());
+    }
+    let json = program.run(&format!("info {} --json", sample("scans.e57")));
+    let json: serde_json::Value = serde_json::from_str(json.text()).unwrap();
+    assert_eq!(json["details"]["scan 1"], "scan 1, 60 points, from [100, 2, 3]");
+}
+
+#[test]
+fn columns_can_be_named() {
+    let program = Program::new();
+    program.write("a.txt", plane(|x, y| format!("{x} {y}")));
+    let run = program.run("info a.txt --columns y,x,z,c,d");
+    assert!(run.text().contains("understood: y x z\nskipped: c d\n"), "{}", run.text());
+    let wrong = program.run("info a.txt --columns x,y,z");
+    assert!(wrong.error(1).contains("5 values, and 3 columns are named"), "{}", wrong.err);
+}
