@@ -1,4 +1,5 @@
-//! The PLY reader alone, from the page cache: bytes per second.
+//! The readers alone, from the page cache: bytes per second. Without arguments of PLY files, otherwise of the given ones:
+//! `cargo bench --bench reader -- scan.laz`.
 
 mod support;
 
@@ -9,8 +10,15 @@ use surfel::formats;
 
 fn main() -> Result<()> {
     let folder = tempfile::tempdir()?;
-    let table = Table::new("reading a PLY file from the page cache", None);
-    for (name, path) in inputs(folder.path())? {
+    let given: Vec<PathBuf> =
+        std::env::args_os().skip(1).filter(|name| name != "--bench").map(PathBuf::from).collect();
+    let table = Table::new("reading a file from the page cache", None);
+    let inputs = if given.is_empty() {
+        inputs(folder.path())?
+    } else {
+        given.into_iter().map(|path| (path.display().to_string(), path)).collect()
+    };
+    for (name, path) in inputs {
         let bytes = path.metadata()?.len() as usize;
         let read = whole(|| Ok(formats::read(&path, &Default::default(), &())?));
         table.compare(vec![Row::new(name, read).of(bytes, "B/s")])?;
@@ -19,14 +27,14 @@ fn main() -> Result<()> {
 }
 
 /// Five million coloured points with normals in 135 MB, fewer points as text, and a mesh if it is present.
-fn inputs(folder: &Path) -> Result<Vec<(&'static str, PathBuf)>> {
+fn inputs(folder: &Path) -> Result<Vec<(String, PathBuf)>> {
     let mut inputs = vec![
-        ("binary, 5 M points", write(folder.join("binary.ply"), 5_000_000, binary())?),
-        ("ASCII, 300 k points", write(folder.join("ascii.ply"), 300_000, ascii())?),
+        ("binary, 5 M points".into(), write(folder.join("binary.ply"), 5_000_000, binary())?),
+        ("ASCII, 300 k points".into(), write(folder.join("ascii.ply"), 300_000, ascii())?),
     ];
     let dragon = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/stanford/dragon/dragon_vrip.ply");
     if dragon.exists() {
-        inputs.push(("dragon", dragon))
+        inputs.push(("dragon".into(), dragon))
     } else {
         eprintln!("SKIPPED: there is no {}", dragon.display())
     }

@@ -90,7 +90,7 @@ impl Reader for E57 {
                     meter.finish();
                     (arrays, tally)
                 };
-                let points = Points::new(arrays, tally)?;
+                let points = Points::new(arrays, tally, None)?;
                 let view = view(&clouds, points.cloud.origin);
                 let report = Report {
                     details: details(&file, &clouds),

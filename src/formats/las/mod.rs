@@ -14,6 +14,7 @@ mod extra;
 mod fields;
 mod header;
 mod read;
+mod stored;
 #[cfg(test)]
 mod tests;
 
@@ -27,6 +28,7 @@ use crate::Progress;
 use crate::error::Cause;
 use crate::geometry::{Cloud, Colours};
 use header::Header;
+use stored::Stored;
 
 /// The LAS and LAZ formats.
 pub(super) struct Las;
@@ -62,8 +64,17 @@ impl Reader for Las {
         let encoding =
             if header.format.is_compressed { Encoding::Compressed } else { Encoding::BinaryLittleEndian };
         let loaded = Layout::of(&element, options.chosen(&element), false).and_then(|layout| {
-            let table =
-                read::Table { input, header: &header, fields: &fields, element: &element, layout: &layout };
+            let points = Stored::find(&header, &input.source)?;
+            let origin = points.origin(&header, &input.source)?;
+            let layout = origin.map_or(layout.clone(), |origin| layout.relative_to(origin));
+            let table = read::Table {
+                source: &input.source,
+                header: &header,
+                points,
+                fields: &fields,
+                element: &element,
+                layout: &layout,
+            };
             load(&table, encoding, progress)
         });
         Ok(Inspected { format: self.name(), encoding, elements: vec![element], loaded })
@@ -71,10 +82,10 @@ impl Reader for Las {
 }
 
 fn load(table: &read::Table, encoding: Encoding, progress: &dyn Progress) -> Parsed<Loaded> {
-    let meter = Meter::new(progress, table.input.source.size());
+    let meter = Meter::new(progress, table.source.size());
     let (arrays, tally) = table.read(&meter)?;
     meter.finish();
-    let points = Points::new(arrays, tally)?;
+    let points = Points::new(arrays, tally, table.layout.origin)?;
     let report = Report {
         details: details::of(table.header),
         z_up: true,

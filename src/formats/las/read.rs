@@ -3,10 +3,10 @@
 use super::chunks::{Chunk, Chunks};
 use super::fields::Field;
 use super::header::Header;
+use super::stored::Stored;
 use crate::formats::declared::Element;
 use crate::formats::meter::Meter;
-use crate::formats::reader::Input;
-use crate::formats::source::Parsed;
+use crate::formats::source::{Parsed, Source};
 use crate::formats::table::binary::gather;
 use crate::formats::table::{Arrays, Layout, ROWS, Records, Rows, Tally, fill};
 use laz::DecompressionSelection as Selection;
@@ -14,8 +14,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// The points of a file, and what is requested of them.
 pub struct Table<'a> {
-    pub input: &'a Input<'a>,
+    pub source: &'a Source<'a>,
     pub header: &'a Header,
+    pub points: Stored,
     pub fields: &'a [Field],
     pub element: &'a Element,
     pub layout: &'a Layout,
@@ -24,24 +25,18 @@ pub struct Table<'a> {
 impl Table<'_> {
     /// Reads all points by all threads.
     pub fn read(&self, meter: &Meter) -> Parsed<(Arrays, Tally)> {
-        if self.header.format.is_compressed { self.read_chunks(meter) } else { self.read_records(meter) }
+        match &self.points {
+            Stored::Records => self.read_records(meter),
+            Stored::Chunks(chunks) => self.read_chunks(chunks, meter),
+        }
     }
 
     fn read_records(&self, meter: &Meter) -> Parsed<(Arrays, Tally)> {
         let Header { start, count, stride, .. } = *self.header;
-        let left = self.input.source.size() - start;
-        if u128::from(count) * stride as u128 > left.into() {
-            return Err(format!(
-                "the header claims {count} points of {stride} bytes, but {left} bytes are left, {} points: the file is truncated or its \
-                 header wrong; fetch it again",
-                left / stride as u64
-            )
-            .into());
-        }
         let used = self.used();
         let stored: Vec<_> =
             used.iter().map(|(column, field)| (*column, field.offset, field.stored)).collect();
-        let records = Records { source: &self.input.source, start, big_endian: false };
+        let records = Records { source: self.source, start, big_endian: false };
         let mut arrays = Arrays::new(count, self.layout)?;
         let tally = records.fill(
             &mut arrays,
@@ -54,15 +49,14 @@ impl Table<'_> {
         Ok((arrays, tally))
     }
 
-    fn read_chunks(&self, meter: &Meter) -> Parsed<(Arrays, Tally)> {
-        let chunks = Chunks::read(self.header, &self.input.source)?;
+    fn read_chunks(&self, chunks: &Chunks, meter: &Meter) -> Parsed<(Arrays, Tally)> {
         let mut arrays = Arrays::new(self.header.count, self.layout)?;
         let used = self.used();
         let selection = selection(&used);
         let sizes = chunks.all.iter().map(|chunk| chunk.rows);
         let tally = fill(&mut arrays, self.layout, sizes, Vec::new, |buffer, index, rows| {
             let chunk = &chunks.all[index];
-            let bytes = self.input.source.view(chunk.start, chunk.length as usize, buffer)?;
+            let bytes = self.source.view(chunk.start, chunk.length as usize, buffer)?;
             let convert = |records: &[u8]| {
                 self.convert(records, &used, rows);
                 meter.add(chunk.length * (records.len() / self.header.stride) as u64 / chunk.rows as u64)

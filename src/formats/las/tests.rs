@@ -228,3 +228,29 @@ fn colours_of_zeros_are_none() {
     let deep = Colours::Linear(vec![[decode(256.0, Scalar::U16), 0.0, 0.0]]);
     assert_eq!(colours(deep.clone()), Some(deep));
 }
+
+/// The records of a file of point format 0, several times.
+fn repeated(few: &[u8], times: u32) -> Vec<u8> {
+    let start = u32::from_le_bytes(few[96..100].try_into().unwrap()) as usize;
+    let mut many = few[..start].to_vec();
+    (0..times).for_each(|_| many.extend_from_slice(&few[start..start + 60 * 20]));
+    many[107..111].copy_from_slice(&(60 * times).to_le_bytes());
+    many
+}
+
+#[test]
+fn many_points_get_their_origin_from_some() {
+    let few = bytes("format0.las");
+    let many = repeated(&few, 10_000);
+    let [few, many] =
+        [&few, &many].map(|bytes| read_bytes("a", bytes, &ReadOptions::default()).unwrap().cloud);
+    assert_eq!((many.len(), many.origin.is_finite()), (600_000, true));
+    for i in [0, 59, 60, 300_017, 599_999] {
+        let at = |cloud: &Cloud, i: usize| cloud.origin + cloud.positions[i].as_dvec3();
+        assert!((at(&many, i) - at(&few, i % 60)).abs().max_element() < 4e-6, "{i}");
+    }
+    for scale in [f64::NAN, 1e300] {
+        let none = failure(&repeated(&patched("format0.las", 131, &scale.to_le_bytes()), 10_000));
+        assert!(none.contains("none of its 600000 points"), "{none}");
+    }
+}

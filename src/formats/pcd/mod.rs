@@ -75,7 +75,7 @@ fn load(
         _ => read_records(source, header, layout, meter),
     }?;
     meter.finish();
-    let points = Points::new(arrays, tally)?;
+    let points = Points::new(arrays, tally, None)?;
     let details = vec![("version".to_owned(), header.version.clone())];
     let report = Report { details, ..Report::of_points(header.encoding, element, layout, &points) };
     let origin = points.cloud.origin;

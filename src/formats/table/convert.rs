@@ -49,8 +49,9 @@ impl Tally {
 
 /// Converts all rows of the block to consecutive entries of `out`.
 pub fn convert(block: &Block, layout: &Layout, out: &mut Slices) -> Tally {
+    let origin = layout.origin.unwrap_or_default();
     let mut tally = if layout.narrow {
-        positions(block, layout, out.narrow, DVec3::as_vec3, Vec3::NAN)
+        positions(block, layout, out.narrow, |position| (position - origin).as_vec3(), Vec3::NAN)
     } else {
         positions(block, layout, out.wide, |position| position, DVec3::NAN)
     };
@@ -89,6 +90,12 @@ pub fn convert(block: &Block, layout: &Layout, out: &mut Slices) -> Tally {
     tally
 }
 
+/// Whether all coordinates are numbers that f32 can have differences of.
+pub fn is_position(at: DVec3) -> bool {
+    let inside = |coordinate: f64| coordinate.abs() <= LARGEST;
+    inside(at.x) & inside(at.y) & inside(at.z)
+}
+
 /// Positions; dropped ones become `none`.
 fn positions<T>(block: &Block, layout: &Layout, to: &mut [T], of: impl Fn(DVec3) -> T, none: T) -> Tally
 where
@@ -96,8 +103,7 @@ where
 {
     let mut tally = Tally::default();
     for (to, position) in to.iter_mut().zip(block.triples(POSITION)) {
-        let inside = |coordinate: f64| coordinate.abs() <= LARGEST;
-        if inside(position.x) & inside(position.y) & inside(position.z) {
+        if is_position(position) {
             *to = of(position);
         } else {
             *to = none;

@@ -4,6 +4,7 @@ use super::columns::*;
 use crate::formats::declared::{Element, Kind, Property, Scalar};
 use crate::formats::quoted::{listed, quoted};
 use crate::formats::source::Parsed;
+use glam::DVec3;
 
 const TEXTURES: &[[&str; 2]] = &[["texture_u", "texture_v"], ["s", "t"], ["u", "v"]];
 const NORMALS: &[[&str; 3]] = &[["nx", "ny", "nz"], ["normal_x", "normal_y", "normal_z"]];
@@ -39,8 +40,10 @@ pub struct Layout {
     pub shape: Shape,
     /// Source of the colour, if any.
     pub colour: Option<Colour>,
-    /// Whether f32 represents all coordinates of the file exactly.
+    /// Whether positions are stored as f32: it represents all coordinates of the file exactly, or the origin is known.
     pub narrow: bool,
+    /// Origin of the positions, if it is known before they are read.
+    pub origin: Option<DVec3>,
     /// Whether the radius column holds diameters.
     pub diameters: bool,
 }
@@ -54,8 +57,14 @@ impl Layout {
         let position =
             find.all(["x", "y", "z"]).ok_or("its points have no x y z: write it again with all three")?;
         let narrow = position.iter().all(|(_, scalar)| scalar.size() <= 2 || *scalar == Scalar::F32);
-        let mut layout =
-            Self { columns: [None; COLUMNS], shape: Shape::Circle, colour: None, narrow, diameters: false };
+        let mut layout = Self {
+            columns: [None; COLUMNS],
+            shape: Shape::Circle,
+            colour: None,
+            narrow,
+            origin: None,
+            diameters: false,
+        };
         layout.fill(POSITION, position);
         layout.find_shape(&find);
         layout.find_clips(&find);
@@ -68,6 +77,11 @@ impl Layout {
             layout.fill(SCALAR, [find.one(name).ok_or_else(|| no_scalar(name, properties))?]);
         }
         Ok(layout)
+    }
+
+    /// The layout with positions relative to an origin, as f32.
+    pub fn relative_to(self, origin: DVec3) -> Self {
+        Self { origin: Some(origin), narrow: true, ..self }
     }
 
     fn fill<const N: usize>(&mut self, first: usize, found: [(usize, Scalar); N]) {

@@ -17,7 +17,7 @@ pub mod text;
 
 pub use arrays::Arrays;
 pub use block::{Block, ROWS};
-pub use convert::{Tally, convert, linear};
+pub use convert::{Tally, convert, is_position, linear};
 pub use fill::{Records, Rows, fill};
 pub use layout::{Layout, Shape, is_colour};
-pub use points::Points;
+pub use points::{Points, origin};

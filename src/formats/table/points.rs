@@ -46,7 +46,8 @@ pub struct Points {
 const NOWHERE: u32 = u32::MAX;
 
 impl Points {
-    pub fn new(mut arrays: Arrays, tally: Tally) -> Parsed<Self> {
+    /// The points of filled arrays; `origin` is that of their positions, if it is known already.
+    pub fn new(mut arrays: Arrays, tally: Tally, origin: Option<DVec3>) -> Parsed<Self> {
         let count = arrays.narrow.len().max(arrays.wide.len());
         let count = u32::try_from(count).map_err(|_| "more than 2³² − 1 points: split the file")?;
         let dropped = Dropped { position: tally.dropped, transparent: tally.transparent };
@@ -56,7 +57,7 @@ impl Points {
         let map = (dropped.total() > 0).then(|| leave_out(&mut arrays));
         let coordinates = std::mem::take(&mut arrays.coordinates);
         let materials = std::mem::take(&mut arrays.materials);
-        let cloud = cloud(arrays);
+        let cloud = cloud(arrays, origin);
         let Tally { lacking, clip_lines, weights, .. } = tally;
         Ok(Self { cloud, dropped, count, map, lacking, clip_lines, weights, coordinates, materials })
     }
@@ -102,8 +103,14 @@ fn leave_out(arrays: &mut Arrays) -> Vec<u32> {
     kept.iter().map(|kept| place(*kept)).collect()
 }
 
-fn cloud(arrays: Arrays) -> Cloud {
-    let origin = origin(&arrays);
+fn cloud(arrays: Arrays, known: Option<DVec3>) -> Cloud {
+    let origin = known.unwrap_or_else(|| {
+        // Of the file's own coordinates.
+        let narrow = sample(&arrays.narrow).map(|position| position.as_dvec3());
+        origin(narrow.chain(sample(&arrays.wide).copied()).collect())
+    });
+    // Those of a known origin are relative to it.
+    let by = if known.is_some() { DVec3::ZERO } else { origin };
     let colours = match (arrays.codes.is_empty(), arrays.linear.is_empty()) {
         (false, _) => Some(Colours::Srgb8(arrays.codes)),
         (_, false) => Some(Colours::Linear(arrays.linear)),
@@ -120,7 +127,7 @@ fn cloud(arrays: Arrays) -> Cloud {
     });
     Cloud {
         origin,
-        positions: positions(arrays.narrow, &arrays.wide, origin),
+        positions: positions(arrays.narrow, &arrays.wide, by),
         normals,
         radii,
         ellipses,
@@ -152,9 +159,9 @@ fn positions(mut narrow: Vec<Vec3>, wide: &[DVec3], origin: DVec3) -> Vec<Vec3> 
 }
 
 /// Origin of the positions. A round number: it is a multiple of the power of two above the extent, so that coordinates translated by whole
-/// metres, say, are unchanged.
-fn origin(arrays: &Arrays) -> DVec3 {
-    let [min, max] = usual_box(arrays);
+/// metres, say, are unchanged. Computed from some of the positions.
+pub fn origin(sample: Vec<DVec3>) -> DVec3 {
+    let [min, max] = usual_box(sample);
     let largest = min.abs().max(max.abs()).max_element();
     let extent = (max - min).max_element();
     if largest <= FAR * extent {
@@ -166,12 +173,7 @@ fn origin(arrays: &Arrays) -> DVec3 {
 }
 
 /// The box between the percentiles; for few points, the box of all.
-fn usual_box(arrays: &Arrays) -> [DVec3; 2] {
-    let mut points: Vec<DVec3> = if arrays.wide.is_empty() {
-        sample(&arrays.narrow).map(|position| position.as_dvec3()).collect()
-    } else {
-        sample(&arrays.wide).copied().collect()
-    };
+fn usual_box(mut points: Vec<DVec3>) -> [DVec3; 2] {
     // Scanners write 0 0 0 for missing returns. Of few points each counts.
     if points.iter().filter(|point| **point != DVec3::ZERO).count() >= MANY {
         points.retain(|point| *point != DVec3::ZERO);

@@ -83,7 +83,7 @@ fn load(
     };
     let (arrays, tally) = rows::read(source, pieces, columns.len(), &layout, finish, meter)?;
     meter.finish();
-    let points = Points::new(arrays, tally)?;
+    let points = Points::new(arrays, tally, None)?;
     let report = Report::of_points(Encoding::Ascii, element, &layout, &points);
     Ok(Loaded { cloud: points.cloud, report })
 }

@@ -1,0 +1,77 @@
+//! How and where the points are stored.
+
+use super::chunks::Chunks;
+use super::header::Header;
+use crate::formats::source::{Parsed, Source};
+use crate::formats::table::{is_position, origin};
+use glam::DVec3;
+
+/// Points in the file.
+pub enum Stored {
+    /// Records of one size.
+    Records,
+    /// Compressed chunks.
+    Chunks(Chunks),
+}
+
+/// Number of points from which their origin is computed beforehand, from some of them: they need not be stored in float64 until it is known.
+const MANY: u64 = 500_000;
+
+/// Number of records for the origin.
+const SAMPLE: u64 = 1 << 10;
+
+/// Least number of chunks for the origin.
+const LEAST: usize = 8;
+
+impl Stored {
+    /// Finds the points, and returns an error if they cannot be those that the header declares.
+    pub fn find(header: &Header, source: &Source) -> Parsed<Self> {
+        if header.format.is_compressed {
+            return Chunks::read(header, source).map(Self::Chunks);
+        }
+        let Header { start, count, stride, .. } = *header;
+        let left = source.size() - start;
+        if u128::from(count) * stride as u128 <= left.into() {
+            return Ok(Self::Records);
+        }
+        Err(format!(
+            "the header claims {count} points of {stride} bytes, but {left} bytes are left, {} points: the file is truncated or its header \
+             wrong; fetch it again",
+            left / stride as u64
+        )
+        .into())
+    }
+
+    /// The origin of many points; `None` for few, whose origin all of them determine.
+    pub fn origin(&self, header: &Header, source: &Source) -> Parsed<Option<DVec3>> {
+        if header.count < MANY {
+            return Ok(None);
+        }
+        let starts: Vec<u64> = match self {
+            Self::Records => {
+                let step = header.count / SAMPLE;
+                (0..SAMPLE).map(|index| header.start + index * step * header.stride as u64).collect()
+            }
+            // The first point of a chunk is not compressed.
+            Self::Chunks(chunks) => chunks.all.iter().map(|chunk| chunk.start).collect(),
+        };
+        if starts.len() < LEAST {
+            return Ok(None);
+        }
+        let sample: Parsed<Vec<DVec3>> =
+            starts.into_iter().map(|start| position(header, source, start)).collect();
+        let usable: Vec<DVec3> = sample?.into_iter().filter(|at| is_position(*at)).collect();
+        Ok((!usable.is_empty()).then(|| origin(usable)))
+    }
+}
+
+/// The position of the record at an offset, bytes.
+fn position(header: &Header, source: &Source, start: u64) -> Parsed<DVec3> {
+    let bytes = source.part(start, 12)?;
+    let axis = |axis: usize| {
+        let stored = i32::from_le_bytes(std::array::from_fn(|byte| bytes[4 * axis + byte]));
+        let [factor, summand] = header.scale(axis);
+        f64::from(stored) * factor + summand
+    };
+    Ok(DVec3::new(axis(0), axis(1), axis(2)))
+}
