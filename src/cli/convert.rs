@@ -21,6 +21,7 @@ pub fn run(args: &Convert) -> Result<()> {
     let bars = progress::bars(args.quiet);
     let options = LoadOptions {
         columns: args.points.columns.clone(),
+        filter: args.points.filter(),
         estimate: args.estimate(),
         polygons: args.points.polygons,
         points: args.points.points,

@@ -29,6 +29,7 @@ pub fn run(args: &Info) -> Result<()> {
     let bars = progress::bars(false);
     let options = ReadOptions {
         columns: args.points.columns.clone(),
+        filter: args.points.filter(),
         triangles: args.points.polygons,
         ..Default::default()
     };
@@ -198,11 +199,12 @@ fn sources(estimated: &Estimated) -> String {
 }
 
 /// Describes the points that are left out.
-fn dropped(Dropped { position, transparent }: Dropped, estimated: &Estimated) -> String {
+fn dropped(Dropped { position, transparent, filtered }: Dropped, estimated: &Estimated) -> String {
     let Estimated { unused, outliers, .. } = *estimated;
+    let filtered = if filtered > 0 { format!(", {filtered} by the filter") } else { String::new() };
     format!(
         "left out: {position} without a finite position, {transparent} less than a tenth opaque, {unused} that no face uses, {outliers} \
-         outliers\n"
+         outliers{filtered}\n"
     )
 }
 

@@ -62,6 +62,7 @@ pub fn run(args: &Render) -> Result<()> {
     let bars = progress::bars(args.quiet);
     let options = LoadOptions {
         columns: args.points.columns.clone(),
+        filter: args.points.filter(),
         estimate: args.points.estimate(),
         polygons: args.points.polygons,
         points: args.points.points,

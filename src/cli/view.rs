@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::time::Instant;
 use surfel::estimate::Estimate;
 use surfel::geometry::{Colours, Extent, Model};
-use surfel::load::{Colouring, Listener, LoadOptions, Suggestion, Uncoloured, load, scene};
+use surfel::load::{Colouring, Listener, LoadOptions, Preview, Suggestion, Uncoloured, load, scene};
 use surfel::settings::methods::Method;
 use surfel::{Error, Progress, Result};
 
@@ -72,6 +72,7 @@ fn loader(args: &View, up: Option<DVec3>) -> Result<viewer::Load> {
     });
     let options = LoadOptions {
         columns: args.points.columns.clone(),
+        filter: args.points.filter(),
         estimate: args.points.estimate(),
         polygons: args.points.polygons,
         points: args.points.points,
@@ -85,30 +86,30 @@ fn loader(args: &View, up: Option<DVec3>) -> Result<viewer::Load> {
     // The triangles belong to the inputs of the command, not to files that are opened later.
     let (truth, own) = (args.truth.clone(), args.inputs.clone());
     Ok(Arc::new(move |names: &[OsString], window: &dyn viewer::LoadListener| {
-        let loaded = |model: Model, up: DVec3| -> Result<Loaded> {
+        let loaded = |model: Model, up: DVec3, suggestion: Option<Suggestion>| -> Result<Loaded> {
             let method = render::method(method, &model)?;
             let info = SceneInfo { names: names.iter().map(display_name).collect(), ..Default::default() };
-            Ok(Loaded { colour_by: colour_by.clone(), info, up, ..Loaded::new(model, method) })
+            let suggested =
+                suggestion.map(|Suggestion { name, map }| viewer::ColourBy { name, map, range: None });
+            let colour_by = colour_by.clone().or(suggested);
+            Ok(Loaded { colour_by, info, up, ..Loaded::new(model, method) })
         };
         let listener = WindowListener { window, loaded: &loaded, quiet: reader.quiet };
         let inputs = load(names, &reader.options, &listener)?;
         let truth = truth.as_deref().filter(|_| *names == own);
         let surface = surface::of_inputs(names, truth, &reader.options, &inputs);
-        let whole = loaded(inputs.model, inputs.up)?;
+        let whole = loaded(inputs.model, inputs.up, inputs.suggestion)?;
         // Built-in scenes have no properties to read.
         let is_scene = names.iter().any(|name| scene(name).is_some());
         let (reader, own) = (reader.clone(), names.to_vec());
         let read = move |name: &str, progress: &dyn Progress| reader.property(&own, name, progress);
         let skipped = if is_scene { vec![] } else { inputs.skipped };
-        let suggested =
-            inputs.suggestion.map(|Suggestion { name, map }| viewer::ColourBy { name, map, range: None });
         Ok(Loaded {
             surface,
-            colour_by: whole.colour_by.or(suggested),
             properties: Some(viewer::PointProperties { names: skipped, read: Arc::new(read) }),
             info: SceneInfo {
                 points: inputs.read,
-                dropped: inputs.dropped.position + inputs.dropped.transparent,
+                dropped: inputs.dropped.total(),
                 estimated: inputs.estimated.summary(),
                 ..whole.info
             },
@@ -125,7 +126,7 @@ fn display_name(name: &OsString) -> String {
 /// Forwards progress and previews to the window, and prints notes.
 struct WindowListener<'a> {
     window: &'a dyn viewer::LoadListener,
-    loaded: &'a (dyn Fn(Model, DVec3) -> Result<Loaded> + Sync),
+    loaded: &'a (dyn Fn(Model, DVec3, Option<Suggestion>) -> Result<Loaded> + Sync),
     quiet: bool,
 }
 
@@ -151,8 +152,8 @@ impl Listener for WindowListener<'_> {
     }
 
     /// Forwards the preview. An error of it is one of the whole scene, too, which reports it.
-    fn preview(&self, model: Model, up: DVec3) {
-        (self.loaded)(model, up).into_iter().for_each(|preview| self.window.preview(preview));
+    fn preview(&self, Preview { model, up, suggestion }: Preview) {
+        (self.loaded)(model, up, suggestion).into_iter().for_each(|preview| self.window.preview(preview));
     }
 }
 

@@ -3,7 +3,8 @@
 //! # How to add a format of point clouds
 //!
 //! 1. `formats/NAME.rs`: a unit struct that implements `Reader` (`formats/reader.rs`): the name, the file extensions, the detection by content
-//!    (`None` if the content does not tell), and a function that reads a file to a [`Cloud`](crate::geometry::Cloud) and a [`Report`]. It
+//!    (`None` if the content does not tell), and a function that reads a file to a [`Cloud`](crate::geometry::Cloud) and a [`Report`]. A format
+//!    that is a table of points declares its columns and fills blocks of their numbers (`formats/table`): the rest is shared. A reader
 //!    reports progress and stops when cancelled, drops and counts points without a position, and returns an error if the file lacks a
 //!    requested property (`ReadOptions::scalar`).
 //! 2. `formats/reader.rs`: its entry in `READERS`; here `mod NAME;`. [`read`] selects by content, then by extension; the window lists
@@ -16,6 +17,7 @@ pub mod colour_bar;
 pub mod declared;
 #[cfg(feature = "e57")]
 mod e57;
+mod filter;
 pub mod image;
 #[cfg(feature = "las")]
 mod las;
@@ -32,6 +34,7 @@ mod table;
 mod text;
 mod up;
 
+pub use filter::{Filter, Returns};
 pub use reader::{Inspected, Loaded, ReadOptions, extensions, inspect, read, read_bytes};
 pub use report::{Dropped, Faces, Lines, Report};
 

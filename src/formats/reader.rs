@@ -1,6 +1,7 @@
 //! Point cloud readers: one per file format, selected by content, otherwise by extension.
 
 use super::declared::{Element, Encoding};
+use super::filter::Filter;
 use super::report::Report;
 use super::source::{Parsed, Source};
 use super::{ply, sniff, text};
@@ -69,6 +70,8 @@ pub struct ReadOptions {
     pub scalar: Option<String>,
     /// Whether the intensity becomes [`Cloud::scalar`] if no other property does and the file has one.
     pub intensity: bool,
+    /// Which points are read.
+    pub filter: Filter,
     /// Names of the columns of a text file, instead of its own.
     pub columns: Option<Vec<String>>,
     /// Whether triangles are kept even if every point has a normal and a radius.

@@ -84,12 +84,14 @@ pub struct Dropped {
     pub position: u64,
     /// A 3D Gaussian is less than a tenth opaque.
     pub transparent: u64,
+    /// The [`Filter`](super::Filter) does not keep it.
+    pub filtered: u64,
 }
 
 impl Dropped {
     /// Number of dropped vertices.
     pub fn total(&self) -> u64 {
-        self.position + self.transparent
+        self.position + self.transparent + self.filtered
     }
 }
 

@@ -10,7 +10,7 @@ pub use colouring::{Coloured, Colouring};
 pub use suggestion::{Suggestion, Uncoloured};
 
 use crate::estimate::{Estimate, Estimated};
-use crate::formats::{self, Dropped, Faces, Lines, Loaded, ReadOptions, Report};
+use crate::formats::{self, Dropped, Faces, Filter, Lines, Loaded, ReadOptions, Report};
 use crate::geometry::{Cloud, Lined, MipMap, Model, ToLines};
 use crate::settings::Settings;
 #[cfg(feature = "scenes")]
@@ -30,6 +30,8 @@ pub struct LoadOptions {
     pub polygons: bool,
     /// Names of the columns of text files, instead of their own.
     pub columns: Option<Vec<String>>,
+    /// Which points of files are read.
+    pub filter: Filter,
     /// How faces are converted to lines; `None` keeps them.
     pub lines: Option<ToLines>,
     /// Tolerance of the simplification of lines, in the positions' unit; `None` keeps all vertices.
@@ -58,8 +60,19 @@ pub trait Listener: Progress {
         false
     }
 
-    /// Receives a preview, some of many points, as soon as these are read, and the up direction.
-    fn preview(&self, _model: Model, _up: DVec3) {}
+    /// Receives a preview as soon as the points are read.
+    fn preview(&self, _preview: Preview) {}
+}
+
+/// Some of many points, with their own normals and radii.
+#[derive(Clone, Debug)]
+pub struct Preview {
+    /// The points.
+    pub model: Model,
+    /// The up direction, as [`LoadedModel::up`].
+    pub up: DVec3,
+    /// What they can be coloured by, as [`LoadedModel::suggestion`].
+    pub suggestion: Option<Suggestion>,
 }
 
 /// Ignores notes and previews.
@@ -141,6 +154,7 @@ impl Load<'_> {
                 skipped.extend(report.skipped);
                 dropped.position += report.dropped.position;
                 dropped.transparent += report.dropped.transparent;
+                dropped.filtered += report.dropped.filtered;
             }
             parts.push(part);
         }
@@ -159,9 +173,9 @@ impl Load<'_> {
             colouring.colour_clouds(&mut clouds, self.listener)
         });
         if self.listener.wants_preview() {
-            self.preview(&parts, colouring, up)
-                .into_iter()
-                .for_each(|preview| self.listener.preview(preview, up));
+            let model = self.preview(&parts, colouring, up);
+            let preview = |model| Preview { model, up, suggestion: suggestion.clone() };
+            model.into_iter().for_each(|model| self.listener.preview(preview(model)));
         }
         let (model, estimated) = self.merge(parts)?;
         skipped.sort();
@@ -229,6 +243,7 @@ impl Load<'_> {
         let options = ReadOptions {
             scalar: self.property().map(str::to_owned),
             intensity: self.options.uncoloured != Uncoloured::Plain,
+            filter: self.options.filter.clone(),
             columns: self.options.columns.clone(),
             triangles: self.draws_faces(),
             texture: self.options.texture.clone(),
@@ -239,6 +254,11 @@ impl Load<'_> {
         let scalar = report.scalar.clone();
         let name = Path::new(input).display().to_string();
         warn(&name, &report);
+        if report.dropped.filtered > 0 {
+            let Report { points, dropped, .. } = &report;
+            self.listener
+                .note(&format!("{name}: {} of {points} points left out by the filter", dropped.filtered));
+        }
         let cloud = self.options.points.map(|points| cloud.some(points as usize)).unwrap_or(cloud);
         Ok((Part { name, cloud, draws_faces: false, up, scalar }, Some(report)))
     }
@@ -346,7 +366,7 @@ impl Load<'_> {
 
 /// Logs warnings about parts of a file that are left out or may be damaged.
 fn warn(name: &str, report: &Report) {
-    let Dropped { position, transparent } = report.dropped;
+    let Dropped { position, transparent, .. } = report.dropped;
     for (count, why) in [(position, "have no finite position"), (transparent, "are less than a tenth opaque")]
     {
         if count > 0 {

@@ -35,7 +35,7 @@ impl OpenDialog {
         self.refresh();
         let mut result = None;
         Window::new("Open").collapsible(false).default_width(420.0).show(ui.ctx(), |ui| {
-            ui.label("A PLY file, a camera (.json), or a built-in scene such as scene:bumpy-sphere.");
+            ui.label("Points (PLY, LAS, LAZ, E57, PCD, text), a camera (.json), or a built-in scene such as scene:bumpy-sphere.");
             let early = self.take_early(ui);
             let field = TextEdit::singleline(&mut self.text).id(Id::new(FIELD)).desired_width(f32::INFINITY);
             let field = ui.add(field);
@@ -149,7 +149,7 @@ mod tests {
     fn files_that_can_be_opened_are_listed_by_name() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::create_dir(folder.path().join("scans")).unwrap();
-        for name in ["b.PLY", "a.json", "c.txt", ".hidden.ply", "none"] {
+        for name in ["b.PLY", "a.json", "c.pdf", ".hidden.ply", "none"] {
             std::fs::write(folder.path().join(name), "").unwrap();
         }
         assert_eq!(list_folder(folder.path()), ["a.json", "b.PLY", "scans/"]);

@@ -104,3 +104,20 @@ fn columns_can_be_named() {
     let wrong = program.run("info a.txt --columns x,y,z");
     assert!(wrong.error(1).contains("5 values, and 3 columns are named"), "{}", wrong.err);
 }
+
+#[test]
+fn classes_and_returns_can_be_selected() {
+    let program = Program::new();
+    let render = |options: &str| {
+        program
+            .run(&format!("render {} -o out.png --reference --size 16x16 {options}", sample("format7.laz")))
+    };
+    let run = render("--class 2,6 --returns last");
+    assert!(run.err.contains("59 of 60 points left out by the filter"), "{}", run.err);
+    let run = render("--returns first");
+    assert!(run.err.contains("48 of 60 points left out by the filter"), "{}", run.err);
+    run.text();
+    assert!(render("--class 300").error(2).contains("300"));
+    let info = program.run(&format!("info {} --returns last", sample("format7.laz")));
+    assert!(info.text().contains("outliers, 48 by the filter\n"), "{}", info.text());
+}

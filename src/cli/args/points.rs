@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use surfel::Result;
 use surfel::estimate::{Estimate, MeshSampling};
-use surfel::formats::image;
+use surfel::formats::{Filter, Returns, image};
 use surfel::geometry::{ColourMap, MipMap};
 use surfel::load::{Colouring, Uncoloured};
 use surfel::settings::Choice;
@@ -17,6 +17,12 @@ pub struct Points {
     /// Renders N points of each file, evenly spread, with estimated radii and without lines and faces [default: all, as the file has them]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub points: Option<u64>,
+    /// Reads points of these classes alone, as 2,6 for ground and buildings
+    #[arg(long, value_name = "CLASS,…", value_delimiter = ',')]
+    pub class: Option<Vec<u8>>,
+    /// Reads these returns of a lidar's pulses alone
+    #[arg(long, value_name = "WHICH", value_parser = choice::<Returns>())]
+    pub returns: Option<Returns>,
     /// Names of the columns of text files, such as x,y,z,intensity [default: the file's first line, or by the numbers]
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub columns: Option<Vec<String>>,
@@ -52,6 +58,11 @@ pub struct Points {
 }
 
 impl Points {
+    /// Which points are read.
+    pub fn filter(&self) -> Filter {
+        Filter { classes: self.class.clone(), returns: self.returns }
+    }
+
     /// The options of the estimation.
     pub fn estimate(&self) -> Estimate {
         Estimate {

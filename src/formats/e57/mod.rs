@@ -67,38 +67,37 @@ impl Reader for E57 {
         } else {
             Err(Cause::from("it has no scan with points: give a file with at least one"))
         };
-        let loaded =
-            some.and_then(|()| Layout::of(&element, options.chosen(&element), false)).and_then(|layout| {
-                refuse_lie(&clouds, source.size())?;
-                let (arrays, tally) = {
-                    let mut arrays = Arrays::new(count, &layout)?;
-                    let meter = Meter::new(progress, count);
-                    let sizes = clouds.iter().map(|cloud| cloud.records as usize);
-                    let tally = fill(
-                        &mut arrays,
-                        &layout,
-                        sizes,
-                        || (),
-                        |(), index, rows| {
-                            // Each thread has its own reader.
-                            let mut file = E57Reader::new(Stream { source, at: 0 }).map_err(cause)?;
-                            let scan = Scan::of(&clouds[index], &element.properties, &layout);
-                            let points = file.pointcloud_raw(&clouds[index]).map_err(cause)?;
-                            scan.read(points, rows, &meter)
-                        },
-                    )?;
-                    meter.finish();
-                    (arrays, tally)
-                };
-                let points = Points::new(arrays, tally, None)?;
-                let view = view(&clouds, points.cloud.origin);
-                let report = Report {
-                    details: details(&file, &clouds),
-                    z_up: true,
-                    ..Report::of_points(Encoding::Compressed, &element, &layout, &points)
-                };
-                Ok(Loaded { cloud: Cloud { view, ..points.cloud }, report })
-            });
+        let loaded = some.and_then(|()| Layout::of(&element, options, false)).and_then(|layout| {
+            refuse_lie(&clouds, source.size())?;
+            let (arrays, tally) = {
+                let mut arrays = Arrays::new(count, &layout)?;
+                let meter = Meter::new(progress, count);
+                let sizes = clouds.iter().map(|cloud| cloud.records as usize);
+                let tally = fill(
+                    &mut arrays,
+                    &layout,
+                    sizes,
+                    || (),
+                    |(), index, rows| {
+                        // Each thread has its own reader.
+                        let mut file = E57Reader::new(Stream { source, at: 0 }).map_err(cause)?;
+                        let scan = Scan::of(&clouds[index], &element.properties, &layout);
+                        let points = file.pointcloud_raw(&clouds[index]).map_err(cause)?;
+                        scan.read(points, rows, &meter)
+                    },
+                )?;
+                meter.finish();
+                (arrays, tally)
+            };
+            let points = Points::new(arrays, tally, None)?;
+            let view = view(&clouds, points.cloud.origin);
+            let report = Report {
+                details: details(&file, &clouds),
+                z_up: true,
+                ..Report::of_points(Encoding::Compressed, &element, &layout, &points)
+            };
+            Ok(Loaded { cloud: Cloud { view, ..points.cloud }, report })
+        });
         Ok(Inspected { format: self.name(), encoding: Encoding::Compressed, elements: vec![element], loaded })
     }
 }

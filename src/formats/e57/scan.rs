@@ -94,7 +94,7 @@ fn name(record: &RecordName) -> Option<String> {
         RecordName::RowIndex => "row",
         RecordName::ColumnIndex => "column",
         RecordName::ReturnCount => "number_of_returns",
-        RecordName::ReturnIndex => "return_index",
+        RecordName::ReturnIndex => "return_number",
         RecordName::TimeStamp => "time",
         RecordName::Unknown { name, .. } => match name.as_str() {
             "normalX" => "nx",
@@ -303,10 +303,12 @@ fn value(cloud: &PointCloud, property: &Property) -> Value {
         let white = if property.kind == Kind::Scalar(Scalar::U8) { 255.0 } else { WHITE };
         return Value::Field { index, summand: -min, factor: white / (max - min) };
     }
+    // E57 counts returns from 0.
+    let summand = if property.name == "return_number" { 1.0 } else { 0.0 };
     let flag = match property.name.as_str() {
         "intensity" => find(cloud, &RecordName::IsIntensityInvalid),
         "time" => find(cloud, &RecordName::IsTimeStampInvalid),
         _ => None,
     };
-    flag.map_or(Value::Field { index, summand: 0.0, factor: 1.0 }, |invalid| Value::Valid { index, invalid })
+    flag.map_or(Value::Field { index, summand, factor: 1.0 }, |invalid| Value::Valid { index, invalid })
 }

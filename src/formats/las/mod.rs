@@ -63,7 +63,7 @@ impl Reader for Las {
         };
         let encoding =
             if header.format.is_compressed { Encoding::Compressed } else { Encoding::BinaryLittleEndian };
-        let loaded = Layout::of(&element, options.chosen(&element), false).and_then(|layout| {
+        let loaded = Layout::of(&element, options, false).and_then(|layout| {
             let points = Stored::find(&header, &input.source)?;
             let origin = points.origin(&header, &input.source)?;
             let layout = origin.map_or(layout.clone(), |origin| layout.relative_to(origin));

@@ -254,3 +254,32 @@ fn many_points_get_their_origin_from_some() {
         assert!(none.contains("none of its 600000 points"), "{none}");
     }
 }
+
+#[test]
+fn classes_and_returns_are_selected() {
+    use crate::formats::{Filter, Returns};
+    let read = |filter: Filter| {
+        let options = ReadOptions { filter, scalar: Some("user_data".into()), ..Default::default() };
+        read_bytes("a.laz", &bytes("format7.laz"), &options)
+    };
+    // The number of each point, by its user data.
+    let kept = |filter: Filter| {
+        let Loaded { cloud, report } = read(filter).unwrap();
+        assert_eq!(report.dropped.filtered, COUNT - cloud.len() as u64);
+        cloud.scalar.unwrap().into_iter().map(|value| value as u64 / 3).collect::<Vec<_>>()
+    };
+    let expected = |is: fn(u64) -> bool| (0..COUNT).filter(|&i| is(i)).collect::<Vec<_>>();
+    let classes = |classes: &[u8]| Filter { classes: Some(classes.into()), returns: None };
+    let returns = |returns| Filter { classes: None, returns: Some(returns) };
+    assert_eq!(kept(Filter::default()), expected(|_| true));
+    assert_eq!(kept(classes(&[2, 6])), expected(|i| [2, 6].contains(&(i % 32))));
+    assert_eq!(kept(returns(Returns::First)), expected(|i| i % 5 == 0));
+    assert_eq!(kept(returns(Returns::Last)), expected(|i| i % 5 == 4));
+    let both = Filter { classes: Some(vec![4, 5]), returns: Some(Returns::Last) };
+    assert_eq!(kept(both), expected(|i| i % 32 == 4 && i % 5 == 4));
+    let none = read(returns(Returns::Single)).unwrap_err().to_string();
+    assert!(none.contains("none of its 60 points is left by the filter"), "{none}");
+    let missing = ReadOptions { filter: classes(&[2]), ..Default::default() };
+    let missing = read_bytes("a.xyz", b"1 2 3\n", &missing).unwrap_err().to_string();
+    assert!(missing.contains("its points have no `classification`"), "{missing}");
+}

@@ -56,7 +56,7 @@ impl Reader for Pcd {
         let properties = header.fields.iter().map(property).collect();
         let element = Element { name: "point".into(), count: header.count, properties };
         let meter = Meter::new(progress, source.size());
-        let loaded = Layout::of(&element, options.chosen(&element), false)
+        let loaded = Layout::of(&element, options, false)
             .and_then(|layout| load(source, &header, &element, &layout, &meter));
         Ok(Inspected { format: self.name(), encoding: header.encoding, elements: vec![element], loaded })
     }

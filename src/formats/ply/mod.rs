@@ -122,7 +122,7 @@ fn parse_records(
     let vertex = elements::find_vertex(&header.elements)?;
     let lines = header.elements.iter().any(|element| element.count > 0 && lines::ends(element).is_some());
     let vertices = &header.elements[vertex];
-    let mut layout = Layout::of(vertices, options.chosen(vertices), lines)?;
+    let mut layout = Layout::of(vertices, options, lines)?;
     if header.elements.iter().any(|element| materials::Columns::of(element).is_some()) {
         layout.find_materials(&header.elements[vertex]);
     }

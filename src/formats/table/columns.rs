@@ -1,7 +1,7 @@
 //! Columns of a block of vertices, and the names of properties that are written.
 
 /// Number of columns.
-pub const COLUMNS: usize = SCALAR + 1;
+pub const COLUMNS: usize = FILTER + 3;
 /// Column of x; y and z follow.
 pub const POSITION: usize = 0;
 /// Column of nx; ny and nz follow.
@@ -34,6 +34,8 @@ pub const TEXTURE: usize = 39;
 pub const MATERIAL: usize = 41;
 /// Column of the scalar that the caller selects.
 pub const SCALAR: usize = 42;
+/// Column of the first property of a [`Filter`](crate::formats::Filter); two others follow.
+pub const FILTER: usize = 43;
 
 /// Column names of two clip lines.
 pub const CLIP_LINES: [[&str; 4]; 2] =

@@ -3,8 +3,8 @@
 use super::arrays::Slices;
 use super::block::Block;
 use super::columns::{
-    AXES, CLIPS, COLOUR, CONCAVE, CORNERS, MATERIAL, NORMAL, OPACITY, POSITION, RADIUS, ROTATION, SCALAR,
-    TANGENT, TEXTURE, TWO_SIDED, WEIGHT,
+    AXES, CLIPS, COLOUR, CONCAVE, CORNERS, FILTER, MATERIAL, NORMAL, OPACITY, POSITION, RADIUS, ROTATION,
+    SCALAR, TANGENT, TEXTURE, TWO_SIDED, WEIGHT,
 };
 use super::layout::{Colour, Layout, Shape};
 use super::shape::{self, Disc};
@@ -27,6 +27,7 @@ const HARMONIC: f64 = 0.282_094_791_773_878_14;
 pub struct Tally {
     pub dropped: u64,
     pub transparent: u64,
+    pub filtered: u64,
     /// Invalid clip lines.
     pub clip_lines: u64,
     /// Invalid normalization weights.
@@ -40,6 +41,7 @@ impl Tally {
         Self {
             dropped: self.dropped + other.dropped,
             transparent: self.transparent + other.transparent,
+            filtered: self.filtered + other.filtered,
             clip_lines: self.clip_lines + other.clip_lines,
             weights: self.weights + other.weights,
             lacking: self.lacking || other.lacking,
@@ -110,6 +112,9 @@ where
             tally.dropped += 1;
         }
     }
+    if !layout.filter.is_none() {
+        tally.filtered = filter(block, layout, to, none);
+    }
     if !layout.fills(OPACITY) {
         return tally;
     }
@@ -121,6 +126,19 @@ where
         }
     }
     tally
+}
+
+/// Drops the positions of points that the filter does not keep; returns the number of those that had one.
+fn filter<T: Copy>(block: &Block, layout: &Layout, to: &mut [T], none: T) -> u64 {
+    let mut filtered = 0;
+    for ((row, to), position) in to.iter_mut().enumerate().zip(block.triples(POSITION)) {
+        let values = [0, 1, 2].map(|index| block.column(FILTER + index)[row]);
+        if !layout.filter.keeps(values) {
+            *to = none;
+            filtered += u64::from(is_position(position));
+        }
+    }
+    filtered
 }
 
 /// Discs with a shape beyond a radius.

@@ -4,6 +4,7 @@ use super::columns::*;
 use crate::formats::declared::{Element, Kind, Property, Scalar};
 use crate::formats::quoted::{listed, quoted};
 use crate::formats::source::Parsed;
+use crate::formats::{Filter, ReadOptions};
 use glam::DVec3;
 
 const TEXTURES: &[[&str; 2]] = &[["texture_u", "texture_v"], ["s", "t"], ["u", "v"]];
@@ -46,11 +47,13 @@ pub struct Layout {
     pub origin: Option<DVec3>,
     /// Whether the radius column holds diameters.
     pub diameters: bool,
+    /// Which points are kept.
+    pub filter: Filter,
 }
 
 impl Layout {
-    /// Finds the supported properties, the property named `chosen`, and those of `lines`, if the file has lines.
-    pub fn of(vertex: &Element, chosen: Option<&str>, lines: bool) -> Parsed<Self> {
+    /// Finds the supported properties, those that the options need, and those of `lines`, if the file has lines.
+    pub fn of(vertex: &Element, options: &ReadOptions, lines: bool) -> Parsed<Self> {
         let properties = &vertex.properties;
         refuse_compressed(properties)?;
         let find = Finder { properties };
@@ -63,6 +66,7 @@ impl Layout {
             colour: None,
             narrow,
             origin: None,
+            filter: options.filter.clone(),
             diameters: false,
         };
         layout.fill(POSITION, position);
@@ -73,7 +77,8 @@ impl Layout {
         if lines {
             layout.find_lines(&find);
         }
-        if let Some(name) = chosen {
+        layout.columns[FILTER..].copy_from_slice(&options.filter.columns(vertex)?);
+        if let Some(name) = options.chosen(vertex) {
             layout.fill(SCALAR, [find.one(name).ok_or_else(|| no_scalar(name, properties))?]);
         }
         Ok(layout)
@@ -285,13 +290,19 @@ mod tests {
         }
     }
 
+    fn chosen(name: &str) -> ReadOptions {
+        ReadOptions { scalar: Some(name.into()), ..Default::default() }
+    }
+
     fn layout(names: &str, scalar: Scalar) -> Layout {
-        Layout::of(&vertex(names, scalar), None, false).unwrap()
+        Layout::of(&vertex(names, scalar), &ReadOptions::default(), false).unwrap()
     }
 
     #[test]
     fn diameters_and_tangents_are_those_of_lines() {
-        let of = |names: &str, lines| Layout::of(&vertex(names, Scalar::F32), None, lines).unwrap();
+        let of = |names: &str, lines| {
+            Layout::of(&vertex(names, Scalar::F32), &ReadOptions::default(), lines).unwrap()
+        };
         let line = of("x y z diameter tx ty tz", true);
         assert_eq!((line.columns[RADIUS], line.diameters), (Some(3), true));
         assert_eq!(line.columns[TANGENT..TEXTURE], [4, 5, 6].map(Some));
@@ -379,11 +390,11 @@ mod tests {
     #[test]
     fn the_chosen_scalar_may_be_any_number() {
         let cloud = vertex("x y z quality", Scalar::F32);
-        assert_eq!(Layout::of(&cloud, Some("quality"), false).unwrap().columns[SCALAR], Some(3));
-        let cause = Layout::of(&cloud, Some("height"), false).unwrap_err().to_string();
+        assert_eq!(Layout::of(&cloud, &chosen("quality"), false).unwrap().columns[SCALAR], Some(3));
+        let cause = Layout::of(&cloud, &chosen("height"), false).unwrap_err().to_string();
         assert!(cause.contains("`height`: choose one of `x`, `y`, `z`, `quality`"), "{cause}");
         let many: String = (0..50_000).map(|i| format!(" p{i}")).collect();
-        let cause = Layout::of(&vertex(&format!("x y z{many}"), Scalar::F32), Some("height"), false)
+        let cause = Layout::of(&vertex(&format!("x y z{many}"), Scalar::F32), &chosen("height"), false)
             .unwrap_err()
             .to_string();
         assert!(cause.ends_with("`p3`, `p4` and 49995 more"), "{cause}");
@@ -396,7 +407,9 @@ mod tests {
             ("packed_position packed_scale", "compressed 3D Gaussians"),
         ];
         for (names, expected) in cases {
-            let cause = Layout::of(&vertex(names, Scalar::F32), None, false).unwrap_err().to_string();
+            let cause = Layout::of(&vertex(names, Scalar::F32), &ReadOptions::default(), false)
+                .unwrap_err()
+                .to_string();
             assert!(cause.contains(expected), "{names}: {cause}");
         }
     }
@@ -405,6 +418,6 @@ mod tests {
     fn a_list_is_no_coordinate() {
         let mut element = vertex("x y z nx ny nz radius", Scalar::F32);
         element.properties[6].kind = Kind::List { length: Scalar::U8, item: Scalar::F32 };
-        assert!(!Layout::of(&element, None, false).unwrap().fills(RADIUS));
+        assert!(!Layout::of(&element, &ReadOptions::default(), false).unwrap().fills(RADIUS));
     }
 }

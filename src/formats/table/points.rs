@@ -50,7 +50,8 @@ impl Points {
     pub fn new(mut arrays: Arrays, tally: Tally, origin: Option<DVec3>) -> Parsed<Self> {
         let count = arrays.narrow.len().max(arrays.wide.len());
         let count = u32::try_from(count).map_err(|_| "more than 2³² − 1 points: split the file")?;
-        let dropped = Dropped { position: tally.dropped, transparent: tally.transparent };
+        let Tally { dropped, transparent, filtered, .. } = tally;
+        let dropped = Dropped { position: dropped, transparent, filtered };
         if dropped.total() >= u64::from(count) {
             return Err(nothing(count, dropped));
         }
@@ -77,6 +78,10 @@ impl Points {
 }
 
 fn nothing(count: u32, dropped: Dropped) -> Cause {
+    if dropped.filtered > 0 {
+        return format!("none of its {count} points is left by the filter: choose other classes or returns")
+            .into();
+    }
     match (count, dropped.transparent) {
         (0, _) => "it has no points: give a file with at least one".into(),
         (_, 0) => format!("none of its {count} points has a finite position: fetch or write it again").into(),

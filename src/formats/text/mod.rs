@@ -76,7 +76,7 @@ fn load(
     options: &ReadOptions,
     meter: &Meter,
 ) -> Parsed<Loaded> {
-    let layout = Layout::of(element, options.chosen(element), false)?;
+    let layout = Layout::of(element, options, false)?;
     let finish = |column: usize, values: &mut [f64]| {
         let factor = layout.columns[column].map_or(1.0, |index| columns[index].factor);
         values.iter_mut().for_each(|value| *value *= factor);

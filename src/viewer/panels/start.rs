@@ -18,7 +18,7 @@ pub fn show(ui: &Ui, free: Rect, state: &mut ViewState, layout: &Layout) {
         ui.set_max_width(free.width() - 20.0);
         ui.vertical_centered(|ui| {
             ui.label(RichText::new("No scene is open.").heading());
-            ui.label(format!("Drop PLY files on this window, or press {open}."));
+            ui.label(format!("Drop files of points on this window, or press {open}."));
             ui.add_space(8.0);
             ui.label("Or open a built-in scene:");
             for scene in SCENES {

@@ -164,7 +164,7 @@ fn what_has_no_position_is_dropped_and_what_is_missing_is_0() {
     let records = "nan 0 0 0 0 1 1\n0 inf 0 0 0 0 0\n1e39 0 0 0 0 1 1\n0 0 0 0 0 1 0\n0 0 0 0 0 1 -1\n0 0 0 0 0 1 1e-60\n\
                    0 0 0 0 0 1 nan\n0 0 0 0 0 0 1\n0 0 0 0 nan 1 1\n0 0 0 1e-300 0 0 1\n0 0 0 0 -1e300 0 2\n";
     let Loaded { cloud, report } = load(&ascii(11, "", records));
-    assert_eq!(report.dropped, Dropped { position: 3, transparent: 0 });
+    assert_eq!(report.dropped, Dropped { position: 3, ..Default::default() });
     assert_eq!((report.points, report.dropped.total()), (11, 3));
     let (z, none) = (Vec3::Z, Vec3::ZERO);
     assert_eq!(cloud.normals, Some(vec![z, z, z, z, none, none, Vec3::X, -Vec3::Y]));

@@ -1,0 +1,81 @@
+//! Which points of a file are read.
+
+use super::declared::{Element, Kind};
+use super::source::Parsed;
+use crate::error::Cause;
+
+/// Conditions that all points that are read meet.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Filter {
+    /// Classes, by the property `classification`; `None` for all.
+    pub classes: Option<Vec<u8>>,
+    /// Returns of a pulse, by `return_number` and `number_of_returns`; `None` for all.
+    pub returns: Option<Returns>,
+}
+
+/// Returns of the pulses of a lidar.
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    strum::EnumMessage,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
+pub enum Returns {
+    /// The first return of each pulse: the tops of trees.
+    First,
+    /// The last return of each pulse: mostly the ground.
+    Last,
+    /// Returns of pulses with a single one: no vegetation.
+    Single,
+}
+
+/// The properties of the conditions, in the order of their columns.
+pub(super) const PROPERTIES: [&str; 3] = ["classification", "return_number", "number_of_returns"];
+
+impl Filter {
+    /// Whether all points are read.
+    pub fn is_none(&self) -> bool {
+        self.classes.is_none() && self.returns.is_none()
+    }
+
+    /// Which of the [`PROPERTIES`] are needed.
+    fn needs(&self) -> [bool; 3] {
+        let returns = self.returns;
+        [
+            self.classes.is_some(),
+            matches!(returns, Some(Returns::First | Returns::Last)),
+            matches!(returns, Some(Returns::Last | Returns::Single)),
+        ]
+    }
+
+    /// Indices of the needed properties among those of the points; an error if one is missing.
+    pub(super) fn columns(&self, points: &Element) -> Parsed<[Option<usize>; 3]> {
+        let mut columns = [None; 3];
+        for (index, name) in PROPERTIES.iter().enumerate().filter(|(index, _)| self.needs()[*index]) {
+            let is = |property: &super::declared::Property| {
+                property.name == *name && matches!(property.kind, Kind::Scalar(_))
+            };
+            let missing =
+                || Cause::from(format!("its points have no `{name}`: read them without a filter by it"));
+            columns[index] = Some(points.properties.iter().position(is).ok_or_else(missing)?);
+        }
+        Ok(columns)
+    }
+
+    /// Whether a point with these values of the [`PROPERTIES`] is read.
+    pub(super) fn keeps(&self, [class, number, count]: [f64; 3]) -> bool {
+        let of_class = |classes: &Vec<u8>| classes.iter().any(|own| f64::from(*own) == class);
+        let of_pulse = |returns: Returns| match returns {
+            Returns::First => number == 1.0,
+            Returns::Last => number == count,
+            Returns::Single => count == 1.0,
+        };
+        self.classes.as_ref().is_none_or(of_class) && self.returns.is_none_or(of_pulse)
+    }
+}
