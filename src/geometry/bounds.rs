@@ -52,21 +52,3 @@ impl Bounds {
         Self { min: self.min - margin, max: self.max + margin, radius: self.radius + margin }
     }
 }
-/// Percentiles of the coordinates between which most points lie, so that stray ones do not matter.
-const PERCENTILES: [f64; 2] = [0.02, 0.98];
-
-/// Maximum number of points for the percentiles.
-const SAMPLE: usize = 1 << 12;
-
-/// Sides of the box of most points; 0 if there are none.
-pub fn usual_extent(positions: &[Vec3]) -> Vec3 {
-    let step = positions.len().div_ceil(SAMPLE).max(1);
-    let mut sample: Vec<Vec3> = positions.iter().copied().step_by(step).collect();
-    let last = sample.len().saturating_sub(1) as f64;
-    Vec3::from([0, 1, 2].map(|axis: usize| {
-        sample.sort_unstable_by(|a, b| a[axis].total_cmp(&b[axis]));
-        let at = |part: f64| sample.get((part * last).round() as usize).map_or(0.0, |at| at[axis]);
-        let [low, high] = PERCENTILES.map(at);
-        high - low
-    }))
-}

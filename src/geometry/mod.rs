@@ -22,11 +22,12 @@ mod strips;
 mod surfels;
 mod texture;
 mod thin;
+#[cfg(any(feature = "estimate", feature = "io"))]
+mod usual_extent;
 mod valid;
 mod weights;
 
 pub use bounds::Bounds;
-pub(crate) use bounds::usual_extent;
 pub use camera::{Camera, Projection};
 pub use clips::{Clip, ClipLine, Clips};
 pub use cloud::{Cloud, View};
@@ -41,6 +42,8 @@ pub use quantity::Quantity;
 pub use strips::{Lined, ToLines};
 pub use surfels::{Colours, Ellipse, Surfels};
 pub use texture::{MipMap, Texture};
+#[cfg(any(feature = "estimate", feature = "io"))]
+pub(crate) use usual_extent::usual_extent;
 pub(crate) use valid::is_unit;
 pub(crate) use weights::square_axis;
 pub use weights::{Corners, Weights, first_axis};

@@ -3,7 +3,8 @@
 use super::chunks::Chunks;
 use super::header::Header;
 use crate::formats::source::{Parsed, Source};
-use crate::formats::table::{is_position, origin};
+use crate::formats::table::convert::is_position;
+use crate::formats::table::points::origin;
 use glam::DVec3;
 
 /// Points in the file.
