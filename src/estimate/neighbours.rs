@@ -220,3 +220,46 @@ fn tail(mut values: Vec<f32>) -> f32 {
     let index = values.len() * 99 / 100;
     if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(index, f32::total_cmp).1 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Cloud;
+
+    /// Radii of points, by their x.
+    fn radii(positions: Vec<Vec3>) -> Vec<(f32, f32)> {
+        let cloud = Cloud { positions, ..Default::default() };
+        let (surfels, _) = cloud.into_surfels(&Estimate::default(), &()).unwrap();
+        surfels.positions.iter().map(|at| at.x).zip(surfels.radii).collect()
+    }
+
+    #[test]
+    fn points_much_sparser_than_most_have_small_discs() {
+        // A dense square, a single line of points far from it, and a square that is 40 times as sparse.
+        let square = |count: i32, step: f32, x: f32| {
+            (0..count * count)
+                .map(move |i| Vec3::new(x + step * (i % count) as f32, step * (i / count) as f32, 0.0))
+        };
+        let line = (0..200).map(|i| Vec3::new(60.0, 0.5 * i as f32, 0.0));
+        let found = radii(square(60, 0.1, 0.0).chain(line).chain(square(12, 4.0, 200.0)).collect());
+        let largest = |from: f32, to: f32| {
+            let inside = found.iter().filter(|(x, _)| (from..to).contains(x));
+            inside.map(|(_, radius)| *radius).fold(0.0, f32::max)
+        };
+        let dense = largest(0.5, 5.0);
+        assert!((0.06..0.12).contains(&dense), "{dense}");
+        assert!(largest(59.0, 61.0) <= 1.51 * dense, "{}", largest(59.0, 61.0));
+        // 0.2 % of the diagonal, which is more than four times the median.
+        let sparse = largest(199.0, 300.0);
+        assert!(sparse > 4.0 * dense && sparse < 0.8, "{sparse}");
+    }
+
+    #[test]
+    fn surfaces_of_one_density_stay_closed() {
+        let step = 0.3;
+        let found =
+            radii((0..900).map(|i| step * Vec3::new((i % 30) as f32, (i / 30) as f32, 0.0)).collect());
+        let inner = found.iter().filter(|(x, _)| (1.0..8.0).contains(x)).map(|(_, radius)| *radius);
+        assert!(inner.fold(f32::MAX, f32::min) >= 0.7 * step);
+    }
+}

@@ -55,51 +55,57 @@ impl Reader for E57 {
         if !beginning.starts_with(b"ASTM-E57") {
             return Err(sniff::name(input.name, &beginning, source.size()).into());
         }
-        let file = E57Reader::new(Stream { source, at: 0 }).map_err(cause)?;
-        let clouds: Vec<PointCloud> =
-            file.pointclouds().into_iter().filter(|cloud| cloud.records > 0).collect();
-        let properties = scan::properties(&clouds);
-        let count = clouds.iter().try_fold(0u64, |sum, cloud| sum.checked_add(cloud.records));
+        let file = open(source)?;
+        let scans: Vec<PointCloud> = file.pointclouds().into_iter().filter(|scan| scan.records > 0).collect();
+        let count = scans.iter().try_fold(0u64, |sum, scan| sum.checked_add(scan.records));
         let count = count.ok_or("its scans claim more than 2⁶⁴ points: fetch it again")?;
-        let element = Element { name: "point".into(), count, properties };
-        let some = if count > 0 {
-            Ok(())
-        } else {
-            Err(Cause::from("it has no scan with points: give a file with at least one"))
-        };
-        let loaded = some.and_then(|()| Layout::of(&element, options, false)).and_then(|layout| {
-            refuse_lie(&clouds, source.size())?;
-            let (arrays, tally) = {
-                let mut arrays = Arrays::new(count, &layout)?;
-                let meter = Meter::new(progress, count);
-                let sizes = clouds.iter().map(|cloud| cloud.records as usize);
-                let tally = fill(
-                    &mut arrays,
-                    &layout,
-                    sizes,
-                    || (),
-                    |(), index, rows| {
-                        // Each thread has its own reader.
-                        let mut file = E57Reader::new(Stream { source, at: 0 }).map_err(cause)?;
-                        let scan = Scan::of(&clouds[index], &element.properties, &layout);
-                        let points = file.pointcloud_raw(&clouds[index]).map_err(cause)?;
-                        scan.read(points, rows, &meter)
-                    },
-                )?;
-                meter.finish();
-                (arrays, tally)
-            };
-            let points = Points::new(arrays, tally, None)?;
-            let view = view(&clouds, points.cloud.origin);
-            let report = Report {
-                details: details(&file, &clouds),
-                z_up: true,
-                ..Report::of_points(Encoding::Compressed, &element, &layout, &points)
-            };
-            Ok(Loaded { cloud: Cloud { view, ..points.cloud }, report })
-        });
+        let element = Element { name: "point".into(), count, properties: scan::properties(&scans) };
+        let loaded = load(source, &file, &scans, &element, options, progress);
         Ok(Inspected { format: self.name(), encoding: Encoding::Compressed, elements: vec![element], loaded })
     }
+}
+
+fn open<'a>(source: &'a Source<'a>) -> Parsed<E57Reader<Stream<'a>>> {
+    E57Reader::new(Stream { source, at: 0 }).map_err(cause)
+}
+
+fn load(
+    source: &Source,
+    file: &E57Reader<Stream>,
+    scans: &[PointCloud],
+    element: &Element,
+    options: &ReadOptions,
+    progress: &dyn Progress,
+) -> Parsed<Loaded> {
+    if scans.is_empty() {
+        return Err("it has no scan with points: give a file with at least one".into());
+    }
+    refuse_lie(scans, source.size())?;
+    let layout = Layout::of(element, options, false)?;
+    let mut arrays = Arrays::new(element.count, &layout)?;
+    let meter = Meter::new(progress, element.count);
+    let sizes = scans.iter().map(|scan| scan.records as usize);
+    let tally = fill(
+        &mut arrays,
+        &layout,
+        sizes,
+        || (),
+        |(), index, rows| {
+            // Each thread has its own reader.
+            let mut file = open(source)?;
+            let points = file.pointcloud_raw(&scans[index]).map_err(cause)?;
+            Scan::of(&scans[index], &element.properties, &layout).read(points, rows, &meter)
+        },
+    )?;
+    meter.finish();
+    let points = Points::new(arrays, tally, None)?;
+    let report = Report {
+        details: details(file, scans),
+        z_up: true,
+        ..Report::of_points(Encoding::Compressed, element, &layout, &points)
+    };
+    let view = view(scans, points.cloud.origin);
+    Ok(Loaded { cloud: Cloud { view, ..points.cloud }, report })
 }
 
 /// The contents of a file as a stream.
@@ -135,8 +141,8 @@ fn cause(error: e57::Error) -> Cause {
 }
 
 /// Returns an error if the scans claim more points than the file has bits for.
-fn refuse_lie(clouds: &[PointCloud], size: u64) -> Parsed<()> {
-    for cloud in clouds {
+fn refuse_lie(scans: &[PointCloud], size: u64) -> Parsed<()> {
+    for cloud in scans {
         let bits: u64 = cloud.prototype.iter().map(|record| scan::bits(&record.data_type)).sum();
         if u128::from(cloud.records) * u128::from(bits) > 8 * u128::from(size) {
             return Err(format!(
