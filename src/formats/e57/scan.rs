@@ -61,7 +61,8 @@ pub fn properties(clouds: &[PointCloud]) -> Vec<Property> {
         }
     };
     if clouds.iter().any(|cloud| !matches!(coordinates(cloud), Coordinates::Missing)) {
-        ["x", "y", "z"].into_iter().for_each(|axis| push(axis, Scalar::F64));
+        let scalar = if clouds.iter().all(has_single_positions) { Scalar::F32 } else { Scalar::F64 };
+        ["x", "y", "z"].into_iter().for_each(|axis| push(axis, scalar));
     }
     let bytes = clouds.iter().all(has_bytes);
     for record in clouds.iter().flat_map(|cloud| &cloud.prototype) {
@@ -130,6 +131,16 @@ fn coordinates(cloud: &PointCloud) -> Coordinates {
         .map(Coordinates::Cartesian)
         .or_else(|| spherical().map(Coordinates::Spherical))
         .unwrap_or(Coordinates::Missing)
+}
+
+/// Whether f32 represents all positions exactly: they are stored so, and no pose is applied.
+fn has_single_positions(cloud: &PointCloud) -> bool {
+    let single = |index: usize| matches!(cloud.prototype[index].data_type, RecordDataType::Single { .. });
+    let is_single = match coordinates(cloud) {
+        Coordinates::Cartesian(indices) => indices.into_iter().all(single),
+        Coordinates::Spherical(_) | Coordinates::Missing => false,
+    };
+    is_single && cloud.transform.is_none()
 }
 
 /// Whether the points are those of a scanner's grid, or around it.

@@ -1,6 +1,7 @@
 //! Files of pye57 (tools/format_samples) and of e57's own writer, and damage.
 
 use super::*;
+use crate::formats::declared::{Kind, Scalar};
 use crate::formats::read_bytes;
 use crate::geometry::Colours;
 use ::e57::{E57Writer, Quaternion, Record, RecordDataType, RecordName, RecordValue, Transform, Translation};
@@ -106,6 +107,24 @@ fn spherical_coordinates_deep_colours_and_flags_are_understood() {
         "{:?}",
         colours[0]
     );
+}
+
+#[test]
+fn positions_in_single_precision_come_back_bit_by_bit() {
+    let axes = [RecordName::CartesianX, RecordName::CartesianY, RecordName::CartesianZ];
+    let fields =
+        |kind: RecordDataType| axes.clone().map(|name| Record { name, data_type: kind.clone() }).into();
+    let at = [[0.1f32, -2.3, 4.5], [1e-3, 7.7, -0.3], [3.3, 1.1, 2.2]];
+    let points = at.map(|at| at.map(RecordValue::Single).into()).into();
+    let single = written(fields(RecordDataType::Single { min: None, max: None }), points, None);
+    let Loaded { cloud, report } = read_bytes("a", &single, &ReadOptions::default()).unwrap();
+    assert_eq!((cloud.origin, cloud.positions), (DVec3::ZERO, at.map(Vec3::from).into()));
+    assert_eq!(report.elements[0].properties[0].kind, Kind::Scalar(Scalar::F32));
+    let points = at.map(|at| at.map(|axis| RecordValue::Double(axis.into())).into()).into();
+    let double = written(fields(RecordDataType::Double { min: None, max: None }), points, None);
+    let Loaded { cloud, report } = read_bytes("a", &double, &ReadOptions::default()).unwrap();
+    assert_eq!(cloud.positions, at.map(Vec3::from));
+    assert_eq!(report.elements[0].properties[0].kind, Kind::Scalar(Scalar::F64));
 }
 
 #[test]
