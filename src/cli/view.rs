@@ -2,7 +2,7 @@
 
 mod surface;
 
-use super::args::{self, OWN, View};
+use super::args::{self, View};
 use super::files::config_folder;
 use super::progress::{self, Silent};
 use super::{camera, rasterizers, render, vulkan};
@@ -65,7 +65,7 @@ pub fn run(args: View) -> Result<()> {
 fn loader(args: &View, up: Option<DVec3>) -> Result<viewer::Load> {
     // Errors of the options are reported before the window opens.
     args.colours.colouring()?;
-    let colour_by = args.colours.color_by.as_ref().filter(|by| by.name != OWN).map(|by| viewer::ColourBy {
+    let colour_by = args.colours.by().map(|by| viewer::ColourBy {
         name: by.name.clone(),
         map: args.colours.color_map,
         range: by.range,

@@ -16,7 +16,7 @@ pub use bench::Bench;
 #[cfg(feature = "metrics")]
 pub use compare::Compare;
 pub use convert::{Convert, Info};
-pub use points::{Colours, OWN, Points};
+pub use points::{Colours, Points};
 #[cfg(feature = "truth")]
 pub use truth::Truth;
 #[cfg(feature = "viewer")]

@@ -80,7 +80,7 @@ impl Points {
 }
 
 /// Name of the files' own colours.
-pub const OWN: &str = "file";
+const OWN: &str = "file";
 
 /// What points are coloured by, instead of by their own colours.
 #[derive(Args, Debug)]
@@ -107,6 +107,11 @@ pub struct Colours {
 }
 
 impl Colours {
+    /// The number or attribute to colour by, unless it is the files' own colours.
+    pub fn by(&self) -> Option<&ColourBy> {
+        self.color_by.as_ref().filter(|by| by.name != OWN)
+    }
+
     /// What happens to points without colours.
     pub fn uncoloured(&self, then: Uncoloured) -> Uncoloured {
         if self.color_by.is_some() { Uncoloured::Plain } else { then }
@@ -117,8 +122,7 @@ impl Colours {
     /// # Errors
     /// [`surfel::Error::Usage`] if a range is given for normals, which have no values.
     pub fn colouring(&self) -> Result<Option<Colouring>> {
-        let by = self.color_by.as_ref().filter(|by| by.name != OWN);
-        by.map(|by| Colouring::new(&by.name, by.range, self.color_map)).transpose()
+        self.by().map(|by| Colouring::new(&by.name, by.range, self.color_map)).transpose()
     }
 
     /// Reads the texture, if one is given.
