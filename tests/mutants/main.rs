@@ -35,7 +35,7 @@ const CAP: usize = 256 << 20;
 /// What reading a file may allocate in all, freed or not, bytes: a few tables, and so much for each byte of it. The most are arrays
 /// for text records of six bytes. The points of LAZ may take any number of bytes, so that [`CAP`] alone holds.
 fn allowance(bytes: &[u8]) -> u64 {
-    if bytes.starts_with(b"LASF") { CAP as u64 } else { (2 << 20) + 100 * bytes.len() as u64 }
+    if bytes.starts_with(b"LASF") { CAP as u64 } else { (1 << 20) + 100 * bytes.len() as u64 }
 }
 
 /// No test of each format, as others must not allocate while [`examine`] counts.
