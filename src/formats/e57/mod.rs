@@ -55,6 +55,7 @@ impl Reader for E57 {
         if !beginning.starts_with(b"ASTM-E57") {
             return Err(sniff::name(input.name, &beginning, source.size()).into());
         }
+        refuse_description(&beginning, source.size())?;
         let file = open(source)?;
         let scans: Vec<PointCloud> = file.pointclouds().into_iter().filter(|scan| scan.records > 0).collect();
         let count = scans.iter().try_fold(0u64, |sum, scan| sum.checked_add(scan.records));
@@ -63,6 +64,19 @@ impl Reader for E57 {
         let loaded = load(source, &file, &scans, &element, options, progress);
         Ok(Inspected { format: self.name(), encoding: Encoding::Compressed, elements: vec![element], loaded })
     }
+}
+
+/// Returns an error for a description that is larger than the file, which would be allocated.
+fn refuse_description(beginning: &[u8], size: u64) -> Parsed<()> {
+    let length =
+        beginning.get(32..40).map_or(0, |bytes| u64::from_le_bytes(std::array::from_fn(|byte| bytes[byte])));
+    if length <= size {
+        return Ok(());
+    }
+    Err(format!(
+        "it claims a description of {length} bytes, but has {size}: it is truncated or wrong; fetch it again"
+    )
+    .into())
 }
 
 fn open<'a>(source: &'a Source<'a>) -> Parsed<E57Reader<Stream<'a>>> {

@@ -135,6 +135,9 @@ fn damage_is_named() {
     let mut damaged = whole.clone();
     damaged[1200] ^= 1;
     assert!(failure(&damaged).contains("checksum"), "{}", failure(&damaged));
+    let mut large = whole.clone();
+    large[32..40].copy_from_slice(&9_000_000u64.to_le_bytes());
+    assert!(failure(&large).contains("a description of 9000000 bytes, but has 11264"), "{}", failure(&large));
     let none = written(
         vec![double(RecordName::CartesianX), double(RecordName::CartesianY), double(RecordName::CartesianZ)],
         vec![],
