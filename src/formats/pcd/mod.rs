@@ -152,6 +152,13 @@ fn read_compressed(
     if packed > source.size() - start {
         return Err(truncated.into());
     }
+    // Three bytes stand for at most 264.
+    if whole > 88 * (packed + 3) {
+        return Err(format!(
+            "it claims that {packed} bytes hold {whole}: the file is damaged; fetch it again"
+        )
+        .into());
+    }
     memory::check("its decompressed points", whole)?;
     let bytes = lzf::decompress(&source.part(start, packed)?, whole as usize)
         .ok()

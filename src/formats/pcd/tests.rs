@@ -116,4 +116,6 @@ fn damage_is_named() {
     let mut claims = compressed;
     claims[payload + 4..payload + 8].copy_from_slice(&7u32.to_le_bytes());
     assert!(failure(&claims).contains("60 points of 28 bytes, but 7 bytes are left"));
+    claims[payload + 4..payload + 8].copy_from_slice(&u32::MAX.to_le_bytes());
+    assert!(failure(&claims).contains("hold 4294967295"), "{}", failure(&claims));
 }
