@@ -173,7 +173,8 @@ fn refuse_lie(scans: &[PointCloud], size: u64) -> Parsed<()> {
 fn view(clouds: &[PointCloud], origin: DVec3) -> View {
     match clouds {
         [cloud] if cloud.transform.is_some() || scan::is_structured(cloud) => {
-            View::From((scan::position(cloud) - origin).as_vec3())
+            let eye = (scan::position(cloud) - origin).as_vec3();
+            if eye.is_finite() { View::From(eye) } else { View::Unknown }
         }
         _ => View::Unknown,
     }

@@ -79,7 +79,8 @@ fn load(
     let details = vec![("version".to_owned(), header.version.clone())];
     let report = Report { details, ..Report::of_points(header.encoding, element, layout, &points) };
     let origin = points.cloud.origin;
-    let view = header.view.map_or(View::Unknown, |view| View::From((view - origin).as_vec3()));
+    let eye = header.view.map(|view| (view - origin).as_vec3()).filter(|eye| eye.is_finite());
+    let view = eye.map_or(View::Unknown, View::From);
     Ok(Loaded { cloud: Cloud { view, ..points.cloud }, report })
 }
 

@@ -85,6 +85,7 @@ fn a_viewpoint_is_the_scanner_and_missing_points_are_counted() {
     assert_eq!((unknown.report.dropped.position, unknown.cloud.view), (1, View::Unknown));
     let seen = ascii("x y z", "F F F", rows).replace("DATA", "VIEWPOINT 1 0 2 1 0 0 0\nDATA");
     assert_eq!(parsed(&seen).unwrap().cloud.view, View::From(Vec3::new(1.0, 0.0, 2.0)));
+    assert_eq!(parsed(&seen.replace("POINT 1", "POINT 1e300")).unwrap().cloud.view, View::Unknown);
 }
 
 #[test]

@@ -118,7 +118,9 @@ where
     if !layout.fills(OPACITY) {
         return tally;
     }
-    for ((to, logit), position) in to.iter_mut().zip(block.column(OPACITY)).zip(block.triples(POSITION)) {
+    let each = to.iter_mut().zip(block.column(OPACITY)).zip(block.triples(POSITION));
+    // A point that the filter leaves out counts there.
+    for (_, ((to, logit), position)) in each.enumerate().filter(|(row, _)| is_kept(block, layout, *row)) {
         let opaque = 1.0 / (1.0 + (-logit).exp()) >= OPAQUE;
         if !opaque && position.abs().max_element() <= LARGEST && !position.is_nan() {
             *to = none;
@@ -128,12 +130,16 @@ where
     tally
 }
 
+/// Whether the filter keeps a row.
+fn is_kept(block: &Block, layout: &Layout, row: usize) -> bool {
+    layout.filter.keeps([0, 1, 2].map(|index| block.column(FILTER + index)[row]))
+}
+
 /// Drops the positions of points that the filter does not keep; returns the number of those that had one.
 fn filter<T: Copy>(block: &Block, layout: &Layout, to: &mut [T], none: T) -> u64 {
     let mut filtered = 0;
     for ((row, to), position) in to.iter_mut().enumerate().zip(block.triples(POSITION)) {
-        let values = [0, 1, 2].map(|index| block.column(FILTER + index)[row]);
-        if !layout.filter.keeps(values) {
+        if !is_kept(block, layout, row) {
             *to = none;
             filtered += u64::from(is_position(position));
         }
