@@ -370,3 +370,18 @@ fn texture_coordinates_are_of_the_picture_that_the_file_or_the_caller_names() {
     assert_eq!((plain.cloud.texture, plain.report.skipped), (None, vec!["s".to_owned(), "t".to_owned()]));
     assert_eq!(plain.report.texture_missing, None);
 }
+
+#[test]
+fn a_faint_gaussian_that_the_filter_leaves_out_counts_once() {
+    let names = "opacity scale_0 scale_1 scale_2 rot_0 rot_1 rot_2 rot_3 classification";
+    let properties: Vec<_> = names.split(' ').map(|name| format!("property float {name}")).collect();
+    let lines = format!("element vertex 4\n{XYZ}\n{}", properties.join("\n"));
+    let record =
+        |opacity: i32, class: i32| format!("{class} {opacity} 0  {opacity} 2 0 -1 1 0 0 0 {class}\n");
+    let records = record(9, 2) + &record(-9, 2) + &record(9, 3) + &record(-9, 3);
+    let filter = crate::formats::Filter { classes: Some(vec![2]), returns: None };
+    let options = ReadOptions { filter, ..Default::default() };
+    let Loaded { cloud, report } = read_bytes("a.ply", &text(&lines, &records), &options).unwrap();
+    assert_eq!(report.dropped, Dropped { transparent: 1, filtered: 2, ..Default::default() });
+    assert_eq!(cloud.len(), 1);
+}
