@@ -45,7 +45,7 @@ Pixel pixel_of(uvec2 coordinates, bool visible, uint id, float alpha) {
     vec2 centre = vec2(coordinates) + 0.5;
     float key = plane_at(splat.plane_hi, splat.plane_lo, centre - anchor_of(splat));
     if (has_linear_depth()) key = frame.near / key;
-    return normalize_pixel(centre, visible, alpha, vec4(1.0, attributes.attribute0), vec4(frame.key_gain * key, attributes.attribute1));
+    return normalize_pixel(centre, visible, alpha, vec4(1.0, attributes.attribute0), vec4(frame.key_gain * shown_key(key, splat.key_disc), attributes.attribute1));
 }
 
 void main() {
@@ -123,7 +123,7 @@ void main() {
 #endif
     gl_FragDepth = ranked(min(key, plane_lo_disc.w), rank);
     sum0 = vec4(1.0, attribute0);
-    sum1 = vec4(SUM_DEPTH ? frame.key_gain * key : 0.0, attribute1);
+    sum1 = vec4(SUM_DEPTH ? frame.key_gain * shown_key(key, plane_lo_disc.w) : 0.0, attribute1);
 }
 
 #endif

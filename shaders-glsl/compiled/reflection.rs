@@ -1907,7 +1907,7 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(FillOptions, scale) == 0);
     const _: () = assert!(std::mem::size_of::<FillOptions>() == 16);
 
-    /// `Frame`, 176 bytes, first in `shaders-glsl/attribute.glsl`.
+    /// `Frame`, 192 bytes, first in `shaders-glsl/attribute.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Frame {
@@ -1922,56 +1922,61 @@ pub mod layout {
         /// Byte 20.
         pub key_gain: f32,
         /// Byte 24.
-        pub cutoff: f32,
+        pub key_reach: f32,
         /// Byte 28.
-        pub epsilon: f32,
+        pub cutoff: f32,
         /// Byte 32.
-        pub visibility_lowpass: f32,
+        pub epsilon: f32,
         /// Byte 36.
-        pub attribute_lowpass: f32,
+        pub visibility_lowpass: f32,
         /// Byte 40.
-        pub kernel_a: f32,
+        pub attribute_lowpass: f32,
         /// Byte 44.
-        pub kernel_n: f32,
+        pub kernel_a: f32,
         /// Byte 48.
-        pub background: [f32; 4],
+        pub kernel_n: f32,
+        /// Unused: the layout leaves a gap here.
+        pub _pad12: [u8; 12],
         /// Byte 64.
-        pub albedo: [f32; 4],
+        pub background: [f32; 4],
         /// Byte 80.
+        pub albedo: [f32; 4],
+        /// Byte 96.
         pub radiance: [[f32; 4]; 4],
-        /// Byte 144.
-        pub ambient: f32,
-        /// Byte 148.
-        pub specular: f32,
-        /// Byte 152.
-        pub shininess: f32,
-        /// Byte 156.
-        pub pixel_filter: f32,
         /// Byte 160.
+        pub ambient: f32,
+        /// Byte 164.
+        pub specular: f32,
+        /// Byte 168.
+        pub shininess: f32,
+        /// Byte 172.
+        pub pixel_filter: f32,
+        /// Byte 176.
         pub origin: [f32; 2],
         /// Unused: the layout leaves a gap here.
-        pub _pad19: [u8; 8],
+        pub _pad20: [u8; 8],
     }
     const _: () = assert!(std::mem::offset_of!(Frame, viewport) == 0);
     const _: () = assert!(std::mem::offset_of!(Frame, near) == 8);
     const _: () = assert!(std::mem::offset_of!(Frame, key_slope) == 12);
     const _: () = assert!(std::mem::offset_of!(Frame, key_far) == 16);
     const _: () = assert!(std::mem::offset_of!(Frame, key_gain) == 20);
-    const _: () = assert!(std::mem::offset_of!(Frame, cutoff) == 24);
-    const _: () = assert!(std::mem::offset_of!(Frame, epsilon) == 28);
-    const _: () = assert!(std::mem::offset_of!(Frame, visibility_lowpass) == 32);
-    const _: () = assert!(std::mem::offset_of!(Frame, attribute_lowpass) == 36);
-    const _: () = assert!(std::mem::offset_of!(Frame, kernel_a) == 40);
-    const _: () = assert!(std::mem::offset_of!(Frame, kernel_n) == 44);
-    const _: () = assert!(std::mem::offset_of!(Frame, background) == 48);
-    const _: () = assert!(std::mem::offset_of!(Frame, albedo) == 64);
-    const _: () = assert!(std::mem::offset_of!(Frame, radiance) == 80);
-    const _: () = assert!(std::mem::offset_of!(Frame, ambient) == 144);
-    const _: () = assert!(std::mem::offset_of!(Frame, specular) == 148);
-    const _: () = assert!(std::mem::offset_of!(Frame, shininess) == 152);
-    const _: () = assert!(std::mem::offset_of!(Frame, pixel_filter) == 156);
-    const _: () = assert!(std::mem::offset_of!(Frame, origin) == 160);
-    const _: () = assert!(std::mem::size_of::<Frame>() == 176);
+    const _: () = assert!(std::mem::offset_of!(Frame, key_reach) == 24);
+    const _: () = assert!(std::mem::offset_of!(Frame, cutoff) == 28);
+    const _: () = assert!(std::mem::offset_of!(Frame, epsilon) == 32);
+    const _: () = assert!(std::mem::offset_of!(Frame, visibility_lowpass) == 36);
+    const _: () = assert!(std::mem::offset_of!(Frame, attribute_lowpass) == 40);
+    const _: () = assert!(std::mem::offset_of!(Frame, kernel_a) == 44);
+    const _: () = assert!(std::mem::offset_of!(Frame, kernel_n) == 48);
+    const _: () = assert!(std::mem::offset_of!(Frame, background) == 64);
+    const _: () = assert!(std::mem::offset_of!(Frame, albedo) == 80);
+    const _: () = assert!(std::mem::offset_of!(Frame, radiance) == 96);
+    const _: () = assert!(std::mem::offset_of!(Frame, ambient) == 160);
+    const _: () = assert!(std::mem::offset_of!(Frame, specular) == 164);
+    const _: () = assert!(std::mem::offset_of!(Frame, shininess) == 168);
+    const _: () = assert!(std::mem::offset_of!(Frame, pixel_filter) == 172);
+    const _: () = assert!(std::mem::offset_of!(Frame, origin) == 176);
+    const _: () = assert!(std::mem::size_of::<Frame>() == 192);
 
     /// `Hierarchy`, 72 bytes, first in `shaders-glsl/attribute.glsl`.
     #[repr(C)]

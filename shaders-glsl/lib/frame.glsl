@@ -11,6 +11,7 @@ layout(set = 0, binding = 0, std140) uniform Frame {
     float key_slope;          // orthographic: −dκ/dz
     float key_far;            // κ of the far plane
     float key_gain;           // scales κ before summation, so that half floats hold it
+    float key_reach;          // how much nearer than its disc a fragment's depth may be: a factor of κ in perspective, else added to it
     float cutoff;             // F, σ
     float epsilon;            // ε in radii
     float visibility_lowpass; // px²
@@ -31,15 +32,15 @@ layout(set = 0, binding = 0, std140) uniform Frame {
 // A copy in registers: lavapipe loads uniforms lane by lane inside loops.
 struct FrameValues {
     vec2 viewport;
-    float near, key_far, key_gain, cutoff, visibility_lowpass, attribute_lowpass, kernel_a, kernel_n;
+    float near, key_far, key_gain, key_reach, cutoff, visibility_lowpass, attribute_lowpass, kernel_a, kernel_n;
     vec4 background, albedo, radiance[4];
     float ambient, specular, shininess;
 } frame_values;
 
 void load_frame() {
-    frame_values = FrameValues(frame.viewport, frame.near, frame.key_far, frame.key_gain, frame.cutoff, frame.visibility_lowpass,
-                               frame.attribute_lowpass, frame.kernel_a, frame.kernel_n, frame.background, frame.albedo,
-                               frame.radiance, frame.ambient, frame.specular, frame.shininess);
+    frame_values = FrameValues(frame.viewport, frame.near, frame.key_far, frame.key_gain, frame.key_reach, frame.cutoff,
+                               frame.visibility_lowpass, frame.attribute_lowpass, frame.kernel_a, frame.kernel_n,
+                               frame.background, frame.albedo, frame.radiance, frame.ambient, frame.specular, frame.shininess);
 }
 #define frame frame_values
 #endif

@@ -299,6 +299,12 @@ float nearest_of(Splat splat, vec2 variance, float stretch) {
 }
 #endif
 
+// κ of the depth that a fragment shows. The low-pass widens a disc over which its plane extends in front of it: by little where the plane
+// is that of the surface, far where the disc is seen edge-on.
+float shown_key(float key, float key_disc) {
+    return min(key, PERSPECTIVE ? frame.key_reach * key_disc : key_disc + frame.key_reach);
+}
+
 // κ that a fragment writes to visibility: moved away from the eye along the ray by the splat's ε, which divides it by 1 + ε/z. Never 0,
 // which marks empty pixels.
 //

@@ -147,6 +147,7 @@ fn frame(
     frame.key_far = key.far as f32;
     let distance = bounds.map_or(projection.near, |bounds| rays.distance(bounds.centre()));
     frame.key_gain = key.gain(projection, distance) as f32;
+    frame.key_reach = key.reach(rays, projection) as f32;
     frame.cutoff = settings.cutoff;
     frame.epsilon = settings.epsilon;
     if let Kernel::Confetti { a, n } = settings.splatting.kernel {
@@ -259,6 +260,13 @@ impl DepthKey {
                 [self.slope * x_axis, self.slope * y_axis, self.slope * z_axis + at_eye]
             }
         }
+    }
+
+    /// How much nearer than its disc a fragment's depth may be: a factor of κ in perspective, else added to it.
+    fn reach(&self, rays: &CameraRays, projection: &Projection) -> f64 {
+        let pixel = rays.pixel.x_axis.length().max(rays.pixel.y_axis.length());
+        let reach = Settings::MOST_RISE * pixel;
+        if projection.perspective { 1.0 + reach } else { self.slope * reach }
     }
 
     /// Inverse of κ at `distance`, so that their product is near 1 at the scene.

@@ -85,6 +85,10 @@ impl Settings {
     /// Largest low-pass variance, px²: the filter widens a splat to at most 10 px per σ.
     pub const MOST_LOWPASS: f32 = 100.0;
 
+    /// How far in front of its disc a splat's plane shows at most, in the widths of a pixel there: the low-pass extends the plane of a disc
+    /// seen edge-on far in front of it.
+    pub(crate) const MOST_RISE: f64 = 8.0;
+
     /// Variance of the filter of pixels where none is given, px².
     pub const DEFAULT_PIXEL_FILTER: f32 = 0.75;
     /// Largest variance of the filter of pixels, px².

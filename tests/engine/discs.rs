@@ -3,10 +3,11 @@
 use crate::support::gpu::{assert_silent, device, render};
 use crate::support::sampling::{Random, bumpy_sphere, forget_sides, narrow, push, stretch};
 use crate::support::settings::splats_alone;
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 use std::sync::Arc;
 use surfel::geometry::{Camera, Ellipse, Surfels};
-use surfel::settings::Cull;
+use surfel::settings::splatting::{Normalization, Splatting, Visibility};
+use surfel::settings::{Alpha, Cull};
 use surfel::verify::reference::{Expected, Tolerance};
 use surfel::vk::{Device, DeviceLimits};
 use surfel::{Error, Outputs, Picture, Rasterizer, RenderOptions, Renderer, Scene, Settings};
@@ -175,4 +176,61 @@ fn scenes_without_a_valid_surfel_or_a_finite_origin_are_refused() {
     let refused = |surfels: &Surfels| matches!(Scene::upload(&device, surfels), Err(Error::Usage(_)));
     assert!(refused(&Surfels { radii: vec![0.0; surfels.len()], ..surfels.clone() }));
     assert!(refused(&Surfels { origin: DVec3::new(0.0, f64::NAN, 0.0), ..surfels }));
+}
+
+/// Discs seen nearly edge-on at several distances, in a row, none over another.
+fn edge_on() -> (Surfels, Camera) {
+    let mut surfels = Surfels::default();
+    for i in 0..40 {
+        let [x, y] = [i % 8, i / 8].map(|v| f64::from(v) - 3.5);
+        let at = DVec3::new(0.25 * x, 0.25 * y, -0.02 * f64::from(i));
+        // From 0.02° to 10° off the view.
+        let tilt = 10f64.powf(-1.7 + f64::from(i) / 15.0).to_radians();
+        let towards = (DVec3::new(0.0, 0.0, 3.0) - at).normalize();
+        let across = towards.cross(DVec3::Y).normalize();
+        push(&mut surfels, at, (across + tilt * towards).normalize(), 0.05);
+    }
+    (surfels, camera(DVec3::new(0.0, 0.0, 3.0)))
+}
+
+#[test]
+fn the_depth_of_a_disc_seen_edge_on_is_not_far_in_front_of_the_disc() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let (surfels, view) = edge_on();
+    let clip = view.world_to_clip();
+    let pixel = 2.0 / (view.projection.y_axis.y.abs() * f64::from(SIZE[1]));
+    // Where each disc is, px, and the least distance: eight widths of a pixel in front of its nearest point.
+    let of_disc = |position: &Vec3| {
+        let at = position.as_dvec3();
+        let ndc = clip.project_point3(at);
+        let centre = [0, 1].map(|axis: usize| (0.5 * ndc[axis] + 0.5) * f64::from(SIZE[axis]));
+        (DVec2::from(centre), (view.view.transform_point3(at).z - 0.05) / (1.0 + 8.0 * pixel))
+    };
+    let placed: Vec<(DVec2, f64)> = surfels.positions.iter().map(of_disc).collect();
+    let limit = |pixel: usize| {
+        let centre =
+            DVec2::new((pixel % SIZE[0] as usize) as f64 + 0.5, (pixel / SIZE[0] as usize) as f64 + 0.5);
+        let far = |(at, _): &&(DVec2, f64)| at.distance_squared(centre);
+        placed.iter().min_by(|a, b| far(a).total_cmp(&far(b))).unwrap().1
+    };
+    let splats = [Visibility::Ray, Visibility::Nearest].map(|visibility| match visibility {
+        Visibility::Nearest => {
+            Splatting { visibility, normalization: Normalization::None, ..Splatting::default() }
+        }
+        _ => Splatting::default(),
+    });
+    for splatting in splats {
+        let settings = Settings { splatting, alpha: Alpha::Coverage, ..splats_alone() };
+        let expected = Expected::new(&surfels, &view, SIZE, &settings, &Tolerance::default()).unwrap();
+        for rasterizer in BOTH {
+            let picture = render(&device, &surfels, &view, &settings, options(rasterizer));
+            let depths = picture.depth.as_ref().unwrap().iter().zip(&picture.colour).enumerate();
+            let shown: Vec<_> = depths.filter(|(_, (_, colour))| colour[3] > 0.0).collect();
+            let wrong = shown.iter().filter(|(pixel, (z, _))| f64::from(**z) < limit(*pixel) - 1e-5).count();
+            assert!(shown.len() > 100 && wrong == 0, "{rasterizer:?}: {wrong} of {} px", shown.len());
+            let verdict = expected.compare(&picture).unwrap();
+            assert!(verdict.passed(), "{rasterizer:?}: {:?}", verdict.failures.first());
+        }
+    }
+    assert_silent(&device);
 }

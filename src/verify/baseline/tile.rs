@@ -140,6 +140,7 @@ impl Tile {
         let amplitude = splat.shape.root / variance.x.sqrt() / variance.y.sqrt();
         let attributes = frame.streams.attributes(splat.surfel);
         let [far, near] = frame.view.depth_keys.map(Vec4::splat);
+        let shown = Vec4::splat(frame.view.shown(splat.disc));
         cover.each(|Block { index, distance, depth_key, inside }| {
             let passed = inside
                 & depth_key.cmpge(self.depth_keys[index])
@@ -151,7 +152,7 @@ impl Tile {
                 sum[index] += weight * attribute;
             }
             if DEPTH_KEYS {
-                self.sums[7][index] += weight * depth_key;
+                self.sums[7][index] += weight * depth_key.min(shown);
             }
         });
     }

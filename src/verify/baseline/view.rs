@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::geometry::Camera;
+use crate::settings::Settings;
 use glam::{DMat3, DVec2, DVec3, DVec4, Vec2};
 
 /// A camera for a picture of some size.
@@ -75,6 +76,13 @@ impl View {
             }
             .map(|depth_key| depth_key as f32),
         })
+    }
+
+    /// Largest depth key that a disc shows whose nearest point has the key `disc`: see [`Settings::MOST_RISE`].
+    pub fn shown(&self, disc: f32) -> f32 {
+        let pixel = self.ray.x_axis.length().max(self.ray.y_axis.length());
+        let rise = (Settings::MOST_RISE * pixel) as f32;
+        if self.perspective { disc * (1.0 + rise) } else { disc + rise }
     }
 
     /// Width and height, px.

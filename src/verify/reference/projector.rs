@@ -109,6 +109,18 @@ impl Projector {
         }
     }
 
+    /// Width of a pixel at distance 1 in perspective, at every distance otherwise: of the larger side.
+    fn pixel_width(&self) -> f64 {
+        let rays = if self.depth.perspective { &self.steps } else { &self.starts };
+        rays.y_axis.length().max(rays.z_axis.length())
+    }
+
+    /// The depth that a fragment of `splat` shows where its plane is at `depth`: see [`Settings::MOST_RISE`].
+    pub(super) fn shown(&self, splat: &Splat, depth: f64) -> f64 {
+        let rise = Settings::MOST_RISE * self.pixel_width();
+        depth.max(if self.depth.perspective { splat.nearest / (1.0 + rise) } else { splat.nearest - rise })
+    }
+
     /// Whether a splat's plane holds 1 / distance, not the distance.
     pub(super) fn has_inverse_depth(&self) -> bool {
         self.depth.perspective && !self.settings.splatting.footprint.is_sprite()

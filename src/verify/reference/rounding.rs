@@ -52,7 +52,8 @@ pub(super) struct RoundingSums {
 impl RoundingSums {
     /// Contribution of one splat.
     pub fn of(model: &ErrorModel, c: &Candidate) -> Self {
-        let depth_weight = if model.projector.depth.perspective { c.weight / c.depth } else { c.weight };
+        let depth = model.projector.shown(c.splat, c.depth);
+        let depth_weight = if model.projector.depth.perspective { c.weight / depth } else { c.weight };
         Self {
             weight: c.weight,
             normal: c.weight * c.splat.normal,
@@ -60,8 +61,8 @@ impl RoundingSums {
             half_ulps: c.weight * c.half_ulps,
             depth_weight,
             depth_error: depth_weight * c.depth_error,
-            depth: depth_weight * c.depth,
-            squared_depth: depth_weight * c.depth * c.depth,
+            depth: depth_weight * depth,
+            squared_depth: depth_weight * depth * depth,
             squared_error: depth_weight * (c.weight_error + c.shift_error).powi(2),
         }
     }
