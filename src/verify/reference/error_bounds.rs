@@ -9,14 +9,14 @@
 use super::Projector;
 use super::attribute::Sums;
 use super::bands::{Band, Bands};
-use super::behind::mixed;
 use super::behind_bounds::BehindBounds;
+use super::blend::{Blend, Blended, Contribution, Fragment, value_of};
 use super::coverage::SampleCounts;
-use super::depth_range::{DepthRange, DepthRanges};
+use super::depth_range::DepthRanges;
 use super::ellipse::Ellipse;
 use super::error_model::{Candidate, ErrorModel};
 use super::nearest::ranked;
-use super::normalize::{Value, resolve};
+use super::normalize::Value;
 use super::projected_scene::ProjectedScene;
 use super::rank::Rank;
 use super::rounding::{RoundingBound, RoundingSums};
@@ -51,40 +51,6 @@ enum AmbiguousPixel {
     Blended(Blended),
     /// The nearest splat is shown alone: one of these, or none.
     Nearest(DVec2, Vec<Option<Contribution>>, SampleCounts),
-}
-
-/// An ambiguous pixel at which splats are blended.
-struct Blended {
-    at: DVec2,
-    nearest: Blend,
-    covered: SampleCounts,
-    /// The surface behind, and the samples that the nearest surface may cover.
-    behind: Option<(Blend, SampleCounts)>,
-}
-
-/// The splats of a surface at a pixel.
-struct Blend {
-    /// The possible visibility depths.
-    depths: Vec<DepthRange>,
-    /// The splats that may be summed at one of them.
-    fragments: Vec<Fragment>,
-}
-
-/// A splat at a pixel.
-struct Fragment {
-    rank: Rank,
-    tolerance: f64,
-    contribution: Contribution,
-    certain: bool,
-    /// See [`Candidate::or_clipped`].
-    or_clipped: bool,
-}
-
-/// Contribution of one splat, or of several together.
-#[derive(Clone, Copy, Default)]
-struct Contribution {
-    sums: Sums,
-    rounding_sums: RoundingSums,
 }
 
 impl ErrorBounds {
@@ -143,78 +109,6 @@ impl AmbiguousPixel {
     }
 }
 
-impl Blend {
-    /// Splits the fragments that `depth` admits: the sum of the certain ones, and those that may pass.
-    fn split(&self, bound: DepthRange) -> (Contribution, Vec<Contribution>) {
-        let (mut certain, mut possible) = (Contribution::default(), Vec::new());
-        // A splat on a clip line has two fragments there; the clipped one stands for both, where it may pass.
-        let clipped = |f: &Fragment| Rank { clipped: true, ..f.rank };
-        let counted_twice = |f: &Fragment| f.or_clipped && bound.may_pass(clipped(f), f.tolerance);
-        for f in self.fragments.iter().filter(|f| bound.may_pass(f.rank, f.tolerance) && !counted_twice(f)) {
-            if f.certain && bound.must_pass(f.rank, f.tolerance) {
-                certain += f.contribution;
-            } else {
-                possible.push(f.contribution);
-            }
-        }
-        (certain, possible)
-    }
-
-    fn outcomes(&self) -> usize {
-        let subsets =
-            |&bound: &DepthRange| 1usize.checked_shl(self.split(bound).1.len() as u32).unwrap_or(usize::MAX);
-        self.depths.iter().map(subsets).fold(0, usize::saturating_add)
-    }
-
-    /// The possible contributions of its splats together; none where visibility wrote no depth.
-    fn contributions(&self) -> impl Iterator<Item = Option<Contribution>> {
-        self.depths.iter().flat_map(move |&bound| {
-            let (certain, possible) = self.split(bound);
-            (0..1 << possible.len()).map(move |subset: usize| {
-                let mut all = certain;
-                let taken = possible.iter().enumerate().filter(|(bit, _)| subset >> bit & 1 == 1);
-                taken.for_each(|(_, contribution)| all += *contribution);
-                bound.exists().then_some(all)
-            })
-        })
-    }
-}
-
-impl Blended {
-    fn outcomes(&self) -> usize {
-        let behind = self.behind.as_ref();
-        let of_behind = behind.map_or(1, |(blend, counts)| blend.outcomes().saturating_mul(counts.len()));
-        self.nearest.outcomes().saturating_mul(self.covered.len()).saturating_mul(of_behind)
-    }
-
-    fn values<'a>(&'a self, projector: &'a Projector) -> impl Iterator<Item = (Value, RoundingBound)> + 'a {
-        self.nearest.contributions().flat_map(move |nearest| {
-            self.covered.parts().flat_map(move |alpha| {
-                let value = value_of(projector, self.at, nearest, alpha);
-                let behind = self.behind.iter().flat_map(move |(blend, counts)| {
-                    blend.contributions().flat_map(move |behind| {
-                        let (behind, bound) = value_of(projector, self.at, behind, alpha);
-                        let shares = counts.parts().map(move |part| (part / alpha).min(1.0));
-                        shares.map(move |share| (mixed(value.0, &behind, share), value.1.max(bound)))
-                    })
-                });
-                self.behind.is_none().then_some(value).into_iter().chain(behind)
-            })
-        })
-    }
-}
-
-/// The value of a pixel by the splats that contribute, with its rounding bound.
-fn value_of(
-    projector: &Projector,
-    at: DVec2,
-    contribution: Option<Contribution>,
-    alpha: f64,
-) -> (Value, RoundingBound) {
-    let rounding = contribution.map_or(RoundingBound::default(), |all| all.rounding_sums.bound());
-    (resolve(projector, at, contribution.as_ref().map(|all| &all.sums), alpha), rounding)
-}
-
 /// Ambiguous pixels and rounding bounds of one band. Scans the attribute footprints twice: first to mark the pixels,
 /// then to collect their splats, because the splats of all pixels would not fit into memory.
 fn of_band(
@@ -252,12 +146,10 @@ fn of_band(
     });
     model.scan(band, &band.contributors(scene), Ellipse::attribute, |c| {
         let Some(fragments) = &mut ambiguous[c.pixel] else { return };
-        let [(is_nearest, _), (is_behind, may_be_elsewhere)] = test(&c);
-        if is_nearest {
-            fragments[0].push(Fragment::of(model, &c, c.certain));
-        }
-        if is_behind {
-            fragments[1].push(Fragment::of(model, &c, c.certain && !may_be_elsewhere));
+        for (fragments, (passes, _)) in fragments.iter_mut().zip(test(&c)) {
+            if passes {
+                fragments.push(Fragment::of(model, &c));
+            }
         }
     });
     let first = band.first_row as usize * band.width as usize;
@@ -266,27 +158,14 @@ fn of_band(
         let behind = behind
             .as_ref()
             .filter(|behind| behind.may_show(i))
-            .map(|behind| (Blend { depths: behind.of(i).collect(), fragments: of_behind }, behind.counts(i)));
-        let nearest = Blend { depths: bounds.of(i).collect(), fragments: nearest };
+            .map(|behind| (Blend::new(behind.of(i), of_behind), behind.counts(i)));
+        let nearest = Blend::new(bounds.of(i), nearest);
         let pixel = Blended { at: band.centre(i), nearest, covered: covered[i].clone(), behind };
-        Some((first + i, AmbiguousPixel::Blended(pixel)))
+        (pixel.outcomes() > 1).then_some((first + i, AmbiguousPixel::Blended(pixel)))
     };
     let rounding =
         rounding_sums.iter().map(|[nearest, behind]| nearest.bound().max(behind.bound())).collect();
     (ambiguous.into_iter().enumerate().filter_map(pixel).collect(), rounding)
-}
-
-impl Fragment {
-    fn of(model: &ErrorModel, c: &Candidate, certain: bool) -> Self {
-        let sums = Sums::of(model.projector, c.splat, c.weight, c.depth);
-        Self {
-            rank: c.rank(c.depth),
-            tolerance: c.depth_tolerance(),
-            contribution: Contribution { sums, rounding_sums: RoundingSums::of(model, c) },
-            certain,
-            or_clipped: c.or_clipped,
-        }
-    }
 }
 
 /// The same where the nearest splat is shown alone.
@@ -332,11 +211,4 @@ fn nearest_of_band(
         }
     }
     (ambiguous, rounding)
-}
-
-impl std::ops::AddAssign for Contribution {
-    fn add_assign(&mut self, other: Self) {
-        self.sums += other.sums;
-        self.rounding_sums += other.rounding_sums;
-    }
 }

@@ -7,7 +7,7 @@ use super::{Projector, Splat};
 use glam::{DVec2, DVec3};
 
 /// Distance from a cut-off ellipse or a clip line within which a pixel centre is ambiguous, px.
-pub(super) const CUTOFF_TOLERANCE: f64 = 3e-4;
+pub(super) const CUTOFF_TOLERANCE: f64 = 2e-4;
 
 /// Relative distance from a threshold within which a depth is ambiguous.
 pub(super) const DEPTH_TOLERANCE: f64 = 2e-6;

@@ -13,6 +13,7 @@ mod attribute;
 mod bands;
 mod behind;
 mod behind_bounds;
+mod blend;
 mod compare;
 mod conic;
 mod coverage;
