@@ -125,7 +125,7 @@ pub static BEHIND_COMPUTE: Module = Module {
     name: "behind_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("behind_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 66, 67, 70, 72, 73],
+    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 67, 70, 72, 73, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, false), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::EDGE_TILES, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -135,7 +135,7 @@ pub static BEHIND_SUBGROUPS_COMPUTE: Module = Module {
     name: "behind_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("behind_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 66, 67, 70, 72, 73],
+    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 67, 70, 72, 73, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, false), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::CLIP_TEXELS, false), (&resource::EDGE_TILES, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -145,7 +145,7 @@ pub static BEHIND_MIX_COMPUTE: Module = Module {
     name: "behind_mix_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("behind_mix_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 66],
+    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::COVERAGE, false), (&resource::SUMS0_IMAGE, false), (&resource::SUMS1_IMAGE, false), (&resource::BEHIND_IMAGE, false)],
     push: 0,
 };
@@ -280,6 +280,16 @@ pub static CULL_TILES_COMPUTE: Module = Module {
     push: size_of::<layout::Chunk>() as u32,
 };
 
+/// The compute stage of `shaders-glsl/edl.glsl`.
+pub static EDL_COMPUTE: Module = Module {
+    name: "edl_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("edl_compute.spv"),
+    constants: &[0, 66],
+    resources: &[(&resource::FRAME, false), (&resource::IMAGE_OUTPUT, true), (&resource::DEPTH_OUTPUT, false)],
+    push: 0,
+};
+
 /// The compute stage of `shaders-glsl/fetch.glsl`.
 pub static FETCH_COMPUTE: Module = Module {
     name: "fetch_compute",
@@ -405,7 +415,7 @@ pub static NEAREST_COMPUTE: Module = Module {
     name: "nearest_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 70, 72],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 67, 70, 72, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -455,7 +465,7 @@ pub static NEAREST_SUBGROUPS_COMPUTE: Module = Module {
     name: "nearest_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 70, 72],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 67, 70, 72, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -465,7 +475,7 @@ pub static NEAREST_SLICES_COMPUTE: Module = Module {
     name: "nearest_slices_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_slices_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 70, 72],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 67, 70, 72, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::SUMS0, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -475,7 +485,7 @@ pub static NEAREST_SUBGROUPS_SLICES_COMPUTE: Module = Module {
     name: "nearest_subgroups_slices_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_subgroups_slices_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 66, 67, 70, 72],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 67, 70, 72, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::SUMS0, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -495,7 +505,7 @@ pub static NORMALIZE_FRAGMENT: Module = Module {
     name: "normalize_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_fragment.spv"),
-    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 66],
+    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY_IMAGE, false), (&resource::SUMS0_IMAGE, false), (&resource::SUMS1_IMAGE, false)],
     push: 0,
 };
@@ -505,7 +515,7 @@ pub static NORMALIZE_COMPUTE: Module = Module {
     name: "normalize_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("normalize_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 66],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, false), (&resource::SUMS1, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: 0,
 };
@@ -525,7 +535,7 @@ pub static NORMALIZE_COVERAGE_FRAGMENT: Module = Module {
     name: "normalize_coverage_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_coverage_fragment.spv"),
-    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 66],
+    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::COVERAGE, false), (&resource::VISIBILITY_IMAGE, false), (&resource::SUMS0_IMAGE, false), (&resource::SUMS1_IMAGE, false)],
     push: 0,
 };
@@ -535,7 +545,7 @@ pub static NORMALIZE_COVERAGE_COMPUTE: Module = Module {
     name: "normalize_coverage_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("normalize_coverage_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 66],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, false), (&resource::SUMS1, false), (&resource::IMAGE_OUTPUT, true), (&resource::COVERAGE, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: 0,
 };
@@ -545,7 +555,7 @@ pub static NORMALIZE_SUBPASS_FRAGMENT: Module = Module {
     name: "normalize_subpass_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_subpass_fragment.spv"),
-    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42, 66],
+    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY_INPUT, false), (&resource::SUMS0_INPUT, false), (&resource::SUMS1_INPUT, false)],
     push: size_of::<layout::Subpass>() as u32,
 };
@@ -555,7 +565,7 @@ pub static NORMALIZE_SUBPASS_COVERAGE_FRAGMENT: Module = Module {
     name: "normalize_subpass_coverage_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_subpass_coverage_fragment.spv"),
-    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42, 66],
+    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::COVERAGE, false), (&resource::VISIBILITY_INPUT, false), (&resource::SUMS0_INPUT, false), (&resource::SUMS1_INPUT, false)],
     push: size_of::<layout::Subpass>() as u32,
 };
@@ -745,7 +755,7 @@ pub static SHADE_COMPUTE: Module = Module {
     name: "shade_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48, 65, 66],
+    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48, 65, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -755,7 +765,7 @@ pub static SHADE_LOOKUPS_COMPUTE: Module = Module {
     name: "shade_lookups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_lookups_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48, 65, 66],
+    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48, 65, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -765,7 +775,7 @@ pub static SHADE_STORE_IDS_COMPUTE: Module = Module {
     name: "shade_store_ids_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_store_ids_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48, 65, 66],
+    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48, 65, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::ID_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -775,7 +785,7 @@ pub static SHADE_LOOKUPS_STORE_IDS_COMPUTE: Module = Module {
     name: "shade_lookups_store_ids_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_lookups_store_ids_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48, 65, 66],
+    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48, 65, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::ID_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -805,7 +815,7 @@ pub static SURFACE_COMPUTE: Module = Module {
     name: "surface_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 66, 67, 68, 70, 72],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 67, 68, 70, 72, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::OPEN_TILES, true), (&resource::EDGE_TILES, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -815,7 +825,7 @@ pub static SURFACE_SUBGROUPS_COMPUTE: Module = Module {
     name: "surface_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 66, 67, 68, 70, 72],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 67, 68, 70, 72, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false), (&resource::OPEN_TILES, true), (&resource::EDGE_TILES, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -966,6 +976,8 @@ pub mod constant {
     pub const INSTANCED: u32 = 37;
     /// `LARGE_TRIANGLES`, first in `shaders-glsl/project.glsl`.
     pub const LARGE_TRIANGLES: u32 = 30;
+    /// `LATE_BACKGROUND`, first in `shaders-glsl/behind.glsl`.
+    pub const LATE_BACKGROUND: u32 = 76;
     /// `LIGHTS`, first in `shaders-glsl/attribute.glsl`.
     pub const LIGHTS: u32 = 7;
     /// `MATERIALS`, first in `shaders-glsl/shade.glsl`.
@@ -1473,7 +1485,7 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
     };
 
-    /// `depth_output`, first in `shaders-glsl/nearest.glsl`.
+    /// `depth_output`, first in `shaders-glsl/edl.glsl`.
     pub static DEPTH_OUTPUT: Resource = Resource {
         name: "depth_output",
         set: 1,
@@ -1952,9 +1964,11 @@ pub mod layout {
         /// Byte 172.
         pub pixel_filter: f32,
         /// Byte 176.
+        pub edl: f32,
+        /// Byte 180.
+        pub pixel_width: f32,
+        /// Byte 184.
         pub origin: [f32; 2],
-        /// Unused: the layout leaves a gap here.
-        pub _pad20: [u8; 8],
     }
     const _: () = assert!(std::mem::offset_of!(Frame, viewport) == 0);
     const _: () = assert!(std::mem::offset_of!(Frame, near) == 8);
@@ -1975,7 +1989,9 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Frame, specular) == 164);
     const _: () = assert!(std::mem::offset_of!(Frame, shininess) == 168);
     const _: () = assert!(std::mem::offset_of!(Frame, pixel_filter) == 172);
-    const _: () = assert!(std::mem::offset_of!(Frame, origin) == 176);
+    const _: () = assert!(std::mem::offset_of!(Frame, edl) == 176);
+    const _: () = assert!(std::mem::offset_of!(Frame, pixel_width) == 180);
+    const _: () = assert!(std::mem::offset_of!(Frame, origin) == 184);
     const _: () = assert!(std::mem::size_of::<Frame>() == 192);
 
     /// `Hierarchy`, 72 bytes, first in `shaders-glsl/attribute.glsl`.

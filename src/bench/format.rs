@@ -228,7 +228,10 @@ pub fn commit(commit: &str) -> String {
 pub fn stale(provenance: &Provenance, code: &str, now: &str) -> Option<String> {
     provenance.is_stale(code).then(|| {
         let (then, now) = (commit(&provenance.commit), commit(now));
-        format!("Measured by commit {then} on {}; the code, or how it is built, has changed since (now {now}).", day(provenance))
+        format!(
+            "Measured by commit {then} on {}; the code, or how it is built, has changed since (now {now}).",
+            day(provenance)
+        )
     })
 }
 

@@ -61,6 +61,8 @@ fn cases() -> Vec<Case> {
         coloured(perspective_ewa::METHOD),
         coloured(perspective_ewa::METHOD)
             .asking("own colours", |settings, _| settings.shading = Shading::Colour),
+        coloured(perspective_ewa::METHOD)
+            .asking("own colours, eye-dome lighting", |settings, _| settings.shading = Shading::Edl),
         coloured(perspective_ewa::METHOD).asking("lit, a mask", |settings, _| settings.alpha = Alpha::Mask),
         coloured(perspective_ewa::METHOD)
             .asking("lit, nearest surface alone", |settings, _| settings.edges = Edges::Nearest),

@@ -169,7 +169,7 @@ pub fn keep_layers(picture: &mut Picture, layers: Outputs) {
 fn check_colours(args: &Render, colouring: Option<&Colouring>, out: &Output) -> Result<()> {
     let Some(colouring) = colouring else { return Ok(()) };
     let refuse = |text: &str| Err(Error::Usage(text.into()));
-    if !matches!(args.render_settings.shading, Shading::Lit | Shading::Colour) {
+    if !args.render_settings.shading.is_coloured() {
         return refuse("--color-by is visible with --shading lit or color only: choose one of them");
     }
     if !args.color_bar {

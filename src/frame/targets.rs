@@ -182,11 +182,12 @@ fn stored(resource: Resource, format: Format, shader: &'static shaders::Resource
 }
 
 /// Output images of compute passes.
-fn stored_outputs(outputs: Outputs) -> [Option<TargetDescription>; 4] {
+fn stored_outputs(variant: &Variant) -> [Option<TargetDescription>; 4] {
+    let outputs = variant.outputs;
     [
         Some(stored(Resource::Image, COLOUR, &resource::IMAGE_OUTPUT)),
         outputs.normal.then(|| stored(Resource::Normal, COLOUR, &resource::NORMAL_OUTPUT)),
-        outputs.depth.then(|| stored(Resource::Depth, Format::R32_SFLOAT, &resource::DEPTH_OUTPUT)),
+        variant.stores_depth().then(|| stored(Resource::Depth, Format::R32_SFLOAT, &resource::DEPTH_OUTPUT)),
         outputs.id.then(|| stored(Resource::Id, Format::R32_UINT, &resource::ID_OUTPUT)),
     ]
 }
@@ -196,9 +197,14 @@ fn raster_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
     let sampled = |resource, format, shader| image(resource, format, ImageUse::Sampled, Some(shader));
     let output = |resource, format| image(resource, format, ImageUse::Output, None);
     let [sums0, sums1] = [sums(variant.wide_sums0()), sums(variant.wide_sums1())];
-    let picture = match variant.filter_radius > 0 || variant.mixed {
+    let loaded = |resource, format, shader| image(resource, format, ImageUse::FilteredOutput, Some(shader));
+    let picture = match variant.filter_radius > 0 || variant.mixed || variant.edl {
         false => output(Resource::Image, COLOUR),
-        true => image(Resource::Image, COLOUR, ImageUse::FilteredOutput, Some(&resource::IMAGE_OUTPUT)),
+        true => loaded(Resource::Image, COLOUR, &resource::IMAGE_OUTPUT),
+    };
+    let depth = match variant.edl {
+        false => variant.outputs.depth.then(|| output(Resource::Depth, Format::R32_SFLOAT)),
+        true => Some(loaded(Resource::Depth, Format::R32_SFLOAT, &resource::DEPTH_OUTPUT)),
     };
     vec![
         Some(sampled(Resource::Visibility, Format::D32_SFLOAT, &resource::VISIBILITY_IMAGE)),
@@ -206,14 +212,14 @@ fn raster_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
         variant.has_sums1().then(|| sampled(Resource::Sums1, sums1, &resource::SUMS1_IMAGE)),
         Some(picture),
         variant.outputs.normal.then(|| output(Resource::Normal, COLOUR)),
-        variant.outputs.depth.then(|| output(Resource::Depth, Format::R32_SFLOAT)),
+        depth,
         coverage(variant),
         variant.mixed.then(|| sampled(Resource::Behind, Format::D32_SFLOAT, &resource::BEHIND_IMAGE)),
     ]
 }
 
 fn compute_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
-    let outputs = stored_outputs(variant.outputs).into_iter();
+    let outputs = stored_outputs(variant).into_iter();
     let visibility = pixels(Resource::Visibility, Format::R32_UINT, 4, &resource::VISIBILITY);
     if !variant.split && !variant.sliced {
         let visibility = (variant.cull_auto || variant.mixed).then_some(visibility);
@@ -253,7 +259,7 @@ fn pull_push_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
         raster_target(Resource::NearestDepth, Format::D32_SFLOAT, &resource::NEAREST_DEPTH),
         raster_target(Resource::NearestId, Format::R32_UINT, &resource::NEAREST_ID),
     ];
-    points.into_iter().chain(stored_outputs(variant.outputs)).collect()
+    points.into_iter().chain(stored_outputs(variant)).collect()
 }
 
 /// Resources of descriptor set 1.
@@ -440,8 +446,11 @@ impl RenderTargets {
 
     /// Output images, to be read back.
     pub fn outputs(&self) -> impl Iterator<Item = &Image> {
-        [self.final_image(), Resource::Normal, Resource::Depth, Resource::Id]
+        // Depths may be there for eye-dome lighting alone.
+        let depth = self.outputs.depth.then_some(Resource::Depth);
+        [Some(self.final_image()), Some(Resource::Normal), depth, Some(Resource::Id)]
             .into_iter()
+            .flatten()
             .filter_map(|output| self.image(output))
     }
 

@@ -156,6 +156,8 @@ fn frame(
     frame.visibility_lowpass = settings.least_lowpass();
     frame.attribute_lowpass = settings.attribute_lowpass();
     frame.pixel_filter = settings.pixel_filter;
+    frame.edl = settings.edl;
+    frame.pixel_width = rays.pixel_width() as f32;
     let light = &settings.lighting;
     frame.background = settings.background.map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
     let [r, g, b] = light.albedo;
@@ -227,6 +229,11 @@ impl CameraRays {
         Ok(Self { rows, eye, forward, pixel: inverse * relative, jacobian: jacobian.abs() })
     }
 
+    /// Width of a pixel at distance 1 in perspective, at every distance otherwise: of the larger side.
+    fn pixel_width(&self) -> f64 {
+        self.pixel.x_axis.length().max(self.pixel.y_axis.length())
+    }
+
     /// Distance of a world point from the eye plane.
     fn distance(&self, point: DVec3) -> f64 {
         self.forward.dot(point - self.eye)
@@ -264,8 +271,7 @@ impl DepthKey {
 
     /// How much nearer than its disc a fragment's depth may be: a factor of κ in perspective, else added to it.
     fn reach(&self, rays: &CameraRays, projection: &Projection) -> f64 {
-        let pixel = rays.pixel.x_axis.length().max(rays.pixel.y_axis.length());
-        let reach = Settings::MOST_RISE * pixel;
+        let reach = Settings::MOST_RISE * rays.pixel_width();
         if projection.perspective { 1.0 + reach } else { self.slope * reach }
     }
 

@@ -57,6 +57,8 @@ pub struct Variant {
     pub mixed: bool,
     /// Radius of the filter of pixels after shading, px; 0: none.
     pub filter_radius: u32,
+    /// Pass `edl` darkens the picture.
+    pub edl: bool,
     /// Quantity that the picture shows.
     pub shading: Shading,
     /// Number of directional lights.
@@ -166,10 +168,11 @@ impl Variant {
         options: &RenderOptions,
         rasterizer: Rasterizer,
     ) -> Self {
-        let shading = settings.shading;
+        let edl = settings.shading == Shading::Edl;
+        let shading = if edl { Shading::Colour } else { settings.shading };
         // Splatting axes have no effect on pull–push.
         let splatting = if settings.pull_push.is_some() { Splatting::default() } else { settings.splatting };
-        let needs_colour = matches!(shading, Shading::Lit | Shading::Colour);
+        let needs_colour = shading.is_coloured();
         let shade = if shading == Shading::Lit { splatting.shade } else { Shade::Pixel };
         let shade_splats = shade == Shade::Splat;
         let robust = settings.pull_push.is_some_and(|pull_push| pull_push.rules == Rules::Robust);
@@ -204,7 +207,7 @@ impl Variant {
             widen_small: settings.widen == Widen::Small && splatting.filter != Filter::None,
             count: options.count,
             normals: lit_pixels || shading == Shading::Normal || options.outputs.normal,
-            depth: shading == Shading::Depth || options.outputs.depth,
+            depth: shading == Shading::Depth || edl || options.outputs.depth,
             colours: needs_colour && (undivided || shade_splats || coloured),
             unbounded_colours: colours.iter().any(|colours| floats.contains(colours)),
             primitives: streams.iter().any(|streams| streams.primitives.any()),
@@ -215,6 +218,7 @@ impl Variant {
             coverage: settings.drawn_alpha() == Alpha::Coverage,
             mixed: settings.mixes_edges(),
             filter_radius: settings.filter_radius(),
+            edl,
             shading,
             lights: if shading == Shading::Lit { settings.lighting.directional.len() as u32 } else { 0 },
             outputs: options.outputs,
@@ -241,6 +245,11 @@ impl Variant {
         let sliced = sliced && self.is_tiled();
         // Pass behind visits all splats of a tile in one dispatch.
         Self { sliced, split: self.split || sliced, mixed: self.mixed && !sliced, ..self }
+    }
+
+    /// Whether depths are stored: as an output, or for `edl`.
+    pub fn stores_depth(&self) -> bool {
+        self.outputs.depth || self.edl
     }
 
     /// Whether splats take the tile path.
@@ -292,7 +301,7 @@ impl Variant {
 
     /// Whether colours of scenes are summed.
     fn blends_colours(&self) -> bool {
-        matches!(self.shading, Shading::Lit | Shading::Colour) && self.texture.is_none()
+        self.shading.is_coloured() && self.texture.is_none()
     }
 
     /// Whether target 0 has a vector after Σw.
@@ -346,10 +355,11 @@ impl Variant {
             .with(constant::SUM_DEPTH, self.depth)
             .with(constant::SUM_COLOURS, self.colours)
             .with(constant::FILTER_RADIUS, self.filter_radius)
+            .with(constant::LATE_BACKGROUND, self.filter_radius > 0 || self.edl)
             .with(constant::SHADING, self.shading as u32)
             .with(constant::LIGHTS, self.lights)
             .with(constant::OUT_NORMAL, self.outputs.normal)
-            .with(constant::OUT_DEPTH, self.outputs.depth)
+            .with(constant::OUT_DEPTH, self.stores_depth())
             .with(constant::CLIPS, self.clips)
             .with(constant::BEYOND_CLIPS, self.coverage && self.clips)
             .with(constant::CURVATURES, self.curvatures)

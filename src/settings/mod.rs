@@ -47,6 +47,8 @@ pub struct Settings {
     pub edges: Edges,
     /// Quantity that the picture shows.
     pub shading: Shading,
+    /// Strength of [`Shading::Edl`], at most [`Settings::MOST_EDL`].
+    pub edl: f32,
     /// Background colour, linear RGB; `None` is transparent (all channels 0). Partly covered pixels are blended with it.
     pub background: Option<[f32; 3]>,
     /// Lights and material of [`Shading::Lit`].
@@ -70,6 +72,7 @@ impl Default for Settings {
             alpha: Alpha::Coverage,
             edges: Edges::Mixed,
             shading: Shading::Lit,
+            edl: Self::DEFAULT_EDL,
             background: None,
             lighting: Lighting::default(),
         }
@@ -94,6 +97,11 @@ impl Settings {
     /// Largest variance of the filter of pixels, px².
     pub const MOST_PIXEL_FILTER: f32 = 4.0;
 
+    /// Strength of eye-dome lighting where none is given.
+    pub const DEFAULT_EDL: f32 = 0.25;
+    /// Largest strength of eye-dome lighting.
+    pub const MOST_EDL: f32 = 100.0;
+
     /// Least low-pass variance at which every splat covers a pixel centre, px²: `(0.71 / F)²`, so that the cut-off radius is at least √½
     /// px. The visibility footprint has at least this.
     pub fn least_lowpass(&self) -> f32 {
@@ -102,10 +110,12 @@ impl Settings {
 
     /// Radius of the filter of pixels, px: 3 σ, rounded up; 0 if the picture is not filtered.
     pub fn filter_radius(&self) -> u32 {
-        match self.shading {
-            Shading::Lit | Shading::Colour => (3.0 * self.pixel_filter.sqrt()).ceil() as u32,
-            Shading::Normal | Shading::Depth | Shading::Overlap | Shading::Weight => 0,
-        }
+        if self.shading.is_coloured() { (3.0 * self.pixel_filter.sqrt()).ceil() as u32 } else { 0 }
+    }
+
+    /// Whether a pass after shading blends with the background: the filter of pixels, or eye-dome lighting.
+    pub fn has_late_background(&self) -> bool {
+        self.filter_radius() > 0 || self.shading == Shading::Edl
     }
 
     /// Low-pass variance of the attribute footprint, px²: the variance that is added to a splat's, or with [`Widen::Small`] its lower
@@ -119,11 +129,7 @@ impl Settings {
 
     /// The meaning of α in the picture: normals, depths and counts are not blended with a colour, so before a background their α is a mask.
     pub fn drawn_alpha(&self) -> Alpha {
-        match self.shading {
-            Shading::Lit | Shading::Colour => self.alpha,
-            _ if self.background.is_none() => self.alpha,
-            Shading::Normal | Shading::Depth | Shading::Overlap | Shading::Weight => Alpha::Mask,
-        }
+        if self.shading.is_coloured() || self.background.is_none() { self.alpha } else { Alpha::Mask }
     }
 
     /// Whether the sides of surfaces are found, for [`Cull::Auto`]: by splats along viewing rays. Pull–push and [`Visibility::Axis`] draw both
@@ -138,14 +144,15 @@ impl Settings {
             && self.pull_push.is_none()
             && self.splatting.visibility == Visibility::Ray
             && self.drawn_alpha() == Alpha::Coverage
-            && matches!(self.shading, Shading::Lit | Shading::Colour)
+            && self.shading.is_coloured()
     }
 
-    /// The settings by which subpasses of a host draw: over the host's picture, without the filter of pixels, which reads neighbours, and
-    /// without [`Cull::Auto`] and [`Edges::Mixed`], which need other passes before and after them.
+    /// The settings by which subpasses of a host draw: over the host's picture, without the filter of pixels and eye-dome lighting, which read
+    /// neighbours, and without [`Cull::Auto`] and [`Edges::Mixed`], which need other passes before and after them.
     pub fn in_subpasses(&self) -> Self {
         let cull = if self.cull == Cull::Auto { Cull::None } else { self.cull };
-        Self { background: None, pixel_filter: 0.0, cull, edges: Edges::Nearest, ..self.clone() }
+        let shading = if self.shading == Shading::Edl { Shading::Colour } else { self.shading };
+        Self { background: None, pixel_filter: 0.0, cull, edges: Edges::Nearest, shading, ..self.clone() }
     }
 
     /// Returns an error if the scene has lines or triangles, as `there` tells, and the method draws splats only.
@@ -207,6 +214,13 @@ impl Settings {
                 "the variance of the pixel filter is {}: give a number of px² from 0 to {}",
                 self.pixel_filter,
                 Self::MOST_PIXEL_FILTER
+            )));
+        }
+        if !(0.0..=Self::MOST_EDL).contains(&self.edl) {
+            return Err(Error::Usage(format!(
+                "the strength of eye-dome lighting is {}: give a number from 0 to {}",
+                self.edl,
+                Self::MOST_EDL
             )));
         }
         if !(0.0..=Self::MOST_LOD).contains(&self.lod) {
@@ -376,6 +390,19 @@ pub enum Shading {
     ///
     /// Includes normalization weights: shows the deviation from a partition of unity.
     Weight,
+    /// The points' own colours under eye-dome lighting: darker behind neighbours.
+    ///
+    /// Shows shape and outlines where normals are unknown (Boucheny 2009). A pixel's colour is multiplied by exp(−s·r̄): `s` is
+    /// [`Settings::edl`], and `r̄` the mean over its eight neighbours of how far these are in front of it, in widths of a pixel there per px
+    /// between both, 0 for those behind or without a surface. A plane looks alike at every size of the picture and distance.
+    Edl,
+}
+
+impl Shading {
+    /// Whether it shows colours, which are filtered and blended with a background, and not another quantity.
+    pub fn is_coloured(self) -> bool {
+        matches!(self, Self::Lit | Self::Colour | Self::Edl)
+    }
 }
 
 /// Lights and material, all linear.

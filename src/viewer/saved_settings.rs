@@ -36,6 +36,8 @@ pub struct SavedSettings {
     #[serde(default = "nearest")]
     edges: String,
     shading: String,
+    #[serde(default = "default_edl")]
+    edl: f32,
     /// Linear colour.
     background: Option<[f32; 3]>,
     /// Whether the panel is hidden.
@@ -94,6 +96,7 @@ impl SavedSettings {
             alpha: settings.alpha.name().into(),
             edges: settings.edges.name().into(),
             shading: settings.shading.name().into(),
+            edl: settings.edl,
             background: settings.background,
             panel_hidden,
         }
@@ -127,6 +130,7 @@ impl SavedSettings {
             alpha: Alpha::named(&self.alpha)?,
             edges: Edges::named(&self.edges)?,
             shading: Shading::named(&self.shading)?,
+            edl: self.edl,
             background: self.background,
             lighting: preset.lighting,
         };
@@ -148,6 +152,11 @@ impl SavedSettings {
 /// Edges of files that do not contain them.
 fn nearest() -> String {
     Edges::Nearest.name().into()
+}
+
+/// Strength of eye-dome lighting of files that do not contain it.
+fn default_edl() -> f32 {
+    Settings::DEFAULT_EDL
 }
 
 #[cfg(test)]
@@ -173,6 +182,7 @@ mod tests {
             alpha: Alpha::Coverage,
             edges: Edges::Nearest,
             shading: Shading::Normal,
+            edl: 0.7,
             background: Some([0.1, 0.2, 1.0]),
             ..Settings::default()
         };

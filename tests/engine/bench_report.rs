@@ -222,7 +222,8 @@ fn one_point_or_equal_values_have_a_plot() {
 fn stale_results_are_marked_everywhere_and_fresh_ones_nowhere() {
     let results = plausible();
     let (fresh, stale) = (page(&results, CODE), page(&results, "other"));
-    let expected = "Measured by commit 559aa66d0c on 2026-11-21; the code, or how it is built, has changed since";
+    let expected =
+        "Measured by commit 559aa66d0c on 2026-11-21; the code, or how it is built, has changed since";
     assert!(!fresh.contains("class=\"stale\"") && !fresh.contains("changed since"));
     // At the top, and in each section except the glossary, which belongs to no session.
     assert_eq!(stale.matches(expected).count(), stale.matches("<section").count());

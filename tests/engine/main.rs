@@ -15,6 +15,7 @@ mod creases;
 mod discs;
 mod disturbance;
 mod edges;
+mod edl;
 mod estimate;
 mod filter;
 mod footprint;

@@ -231,6 +231,9 @@ pub struct RenderSettings {
     /// What the picture shows
     #[arg(long, value_parser = choice::<Shading>(), default_value = Shading::Lit.name())]
     pub shading: Shading,
+    /// Strength of --shading edl: how much pixels behind their neighbours are darkened
+    #[arg(long, value_name = "STRENGTH", default_value_t = Settings::DEFAULT_EDL, allow_hyphen_values = true)]
+    pub edl: f32,
     /// Meaning of α [default: the method's]
     #[arg(long, value_parser = choice::<Alpha>())]
     pub alpha: Option<Alpha>,
@@ -331,6 +334,7 @@ impl RenderSettings {
             alpha: self.alpha.unwrap_or(preset.alpha),
             edges: self.edges.unwrap_or(preset.edges),
             shading: self.shading,
+            edl: self.edl,
             background: self.background.linear(),
             lighting: preset.lighting,
         }

@@ -17,7 +17,7 @@ const LEAST_ALPHA: f32 = 1.0 / 32.0;
 
 /// Whether a shading shows scalars instead of colours.
 pub(super) fn is_scalar(shading: Shading) -> bool {
-    !matches!(shading, Shading::Lit | Shading::Colour)
+    !shading.is_coloured()
 }
 
 /// The colours of a scalar picture.

@@ -225,7 +225,7 @@ fn encode(picture: &Picture, shading: Shading) -> Vec<[u8; 4]> {
     };
     let pixels = picture.colour.iter().enumerate();
     match shading {
-        Shading::Lit | Shading::Colour => picture.colour.par_iter().map(colour).collect(),
+        Shading::Lit | Shading::Colour | Shading::Edl => picture.colour.par_iter().map(colour).collect(),
         Shading::Normal => {
             let normal = |pixel: &[f32; 4]| {
                 let [x, y, z] = [0, 1, 2].map(|axis: usize| unit(0.5 * pixel[axis] + 0.5));

@@ -6,6 +6,7 @@ mod pull_push;
 
 use super::pass::Pass;
 use super::passes::cull::CULL;
+use super::passes::edl::EDL;
 use super::passes::filter::FILTER;
 use super::passes::open::EDGES;
 use super::passes::order::ORDER;
@@ -26,8 +27,8 @@ pub enum Path {
     Subpasses { seed: bool },
 }
 
-/// Passes of a frame of `variant` with so many scenes, in order; in subpasses of a host, raster passes are last, and pixels are not filtered,
-/// as this needs neighbours. Frames by tiles first sort surfels in arbitrary order, and cull clusters of surfels with known bounds.
+/// Passes of a frame of `variant` with so many scenes, in order; in subpasses of a host, raster passes are last, and none needs
+/// neighbours: no eye-dome lighting, and pixels are not filtered. Frames by tiles first sort surfels in arbitrary order, and cull clusters of surfels with known bounds.
 pub fn passes(variant: &Variant, path: Path, scenes: usize) -> Vec<&'static Pass> {
     let mut list = match (variant.pull_push, variant.visibility) {
         (Some(settings), _) => pull_push::passes(variant, settings.storage, scenes),
@@ -39,8 +40,12 @@ pub fn passes(variant: &Variant, path: Path, scenes: usize) -> Vec<&'static Pass
     if variant.mixed {
         list.extend(behind(path, variant.split));
     }
-    if variant.filter_radius > 0 && !matches!(path, Path::Subpasses { .. }) {
-        list.push(&FILTER);
+    if !matches!(path, Path::Subpasses { .. }) {
+        list.extend(
+            [(variant.edl, &EDL), (variant.filter_radius > 0, &FILTER)]
+                .iter()
+                .filter_map(|(there, pass)| there.then_some(*pass)),
+        );
     }
     if variant.clusters {
         list.insert(0, &CULL);

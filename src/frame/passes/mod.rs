@@ -8,6 +8,7 @@ pub mod behind;
 pub mod boxes;
 pub mod copy;
 pub mod cull;
+pub mod edl;
 pub mod fetch;
 pub mod filter;
 pub mod footprint;
@@ -64,7 +65,15 @@ mod tests {
             {
                 for (primitives, count) in [(false, false), (false, true), (true, true)] {
                     let pull_push = method.pull_push;
-                    let frame = Variant { visibility, split, pull_push, primitives, count, ..variant.frame };
+                    let frame = Variant {
+                        visibility,
+                        split,
+                        pull_push,
+                        primitives,
+                        count,
+                        edl: count,
+                        ..variant.frame
+                    };
                     for pass in paths.iter().flat_map(|path| passes(&frame, *path, 1)) {
                         if !all.iter().any(|known| std::ptr::eq(*known, pass)) {
                             all.push(pass);

@@ -138,12 +138,12 @@ impl Baseline {
         outputs: Outputs,
     ) -> Result<&[PassTime]> {
         settings.check()?;
-        let counts = matches!(settings.shading, Shading::Overlap | Shading::Weight);
+        let counts = matches!(settings.shading, Shading::Overlap | Shading::Weight | Shading::Edl);
         let own = self::settings(settings);
         let is_own = (settings.splatting, settings.alpha, settings.pixel_filter)
             == (own.splatting, own.alpha, own.pixel_filter);
         if !is_own || counts || settings.cull == Cull::Auto {
-            let text = "the CPU baseline draws splats alone: choose the mask for α, culling other than auto, the other choices of `baseline::settings`, and neither overlaps nor weights";
+            let text = "the CPU baseline draws splats alone: choose the mask for α, culling other than auto, the other choices of `baseline::settings`, and neither overlaps, weights nor eye-dome lighting";
             return Err(Error::Usage(text.into()));
         }
         let view = View::new(camera, size, self.surfels.origin)?;

@@ -68,7 +68,7 @@ impl<'a> Shader<'a> {
             Shading::Normal => normal,
             Shading::Depth => [surface.depth; 3],
             // Rejected before the frame starts.
-            Shading::Overlap | Shading::Weight => [Vec4::ONE; 3],
+            Shading::Overlap | Shading::Weight | Shading::Edl => [Vec4::ONE; 3],
         };
         let [r, g, b] = value;
         let select = |here: Vec4, otherwise: Vec4| Vec4::select(surface.covered, here, otherwise);

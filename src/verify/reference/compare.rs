@@ -2,13 +2,12 @@
 
 use super::bands::Bands;
 use super::error_bounds::{Admissible, ErrorBounds};
-use super::error_model::ErrorModel;
-use super::filter;
+use super::error_model::{DEPTH_TOLERANCE, ErrorModel};
 use super::filtered_bounds::{FilteredBounds, PixelRange};
 use super::projected_scene::ProjectedScene;
 use super::rounding::RoundingBound;
 use super::tolerance::{Channel, Differences, Limits, Tolerance};
-use super::{Frame, Projector, Value, draw, sides};
+use super::{Frame, Projector, Value, after_light, draw, sides};
 use crate::error::{Error, Result};
 use crate::geometry::{Camera, Surfels};
 use crate::picture::Picture;
@@ -112,10 +111,10 @@ impl Expected {
         let frame = draw(&projector, &scene, &bands, &());
         let mut expected =
             Self { frame, unfiltered: None, filtered: None, bounds, tolerance: *tolerance, depth_shown };
-        if settings.filter_radius() > 0 {
+        if settings.has_late_background() {
             let ranges = (0..expected.frame.depth.len()).into_par_iter().map(|i| expected.range(i)).collect();
-            expected.filtered = Some(FilteredBounds::new(settings, ranges, size));
-            let frame = filter::pass(settings, expected.frame.clone());
+            expected.filtered = Some(FilteredBounds::new(&projector, ranges, size));
+            let frame = after_light(&projector, expected.frame.clone());
             expected.unfiltered = Some(std::mem::replace(&mut expected.frame, frame));
         }
         Ok(expected)
@@ -159,12 +158,13 @@ impl Expected {
     fn range(&self, index: usize) -> PixelRange {
         let rounding = self.bounds.rounding(index);
         let limit = |bound: RoundingBound| self.limits(bound).colour();
-        let own = PixelRange::new(0.0).with(&self.frame.value(index), limit(rounding));
+        let depth = |bound: RoundingBound| bound.depth.max(DEPTH_TOLERANCE);
+        let own = PixelRange::new(0.0).with(&self.frame.value(index), limit(rounding), depth(rounding));
         match self.bounds.admissible(index) {
             Admissible::Definite => own,
             Admissible::Unresolvable => PixelRange::unknown(),
             Admissible::Values(values) => {
-                values.fold(own, |range, (value, bound)| range.with(&value, limit(bound)))
+                values.fold(own, |range, (value, bound)| range.with(&value, limit(bound), depth(bound)))
             }
         }
     }

@@ -20,10 +20,15 @@ pub fn filtered(settings: &Settings, colours: &[[f64; 4]], size: [u32; 2]) -> Ve
     let pixel = |(mean, own): (&[f64; 4], &[f64; 4])| {
         let [r, g, b, a] = *mean;
         let alpha = if settings.drawn_alpha() == Alpha::Coverage { a } else { own[3] };
-        let colour = if alpha > 0.0 { [r / a, g / a, b / a] } else { [0.0; 3] };
-        blended(settings, colour.into(), alpha)
+        over_background(settings, [r / a, g / a, b / a, alpha])
     };
     means.iter().zip(colours).map(pixel).collect()
+}
+
+/// A straight colour over the background; any colour if α is 0.
+pub(super) fn over_background(settings: &Settings, [r, g, b, alpha]: [f64; 4]) -> [f64; 4] {
+    let colour = if alpha > 0.0 { [r, g, b] } else { [0.0; 3] };
+    blended(settings, colour.into(), alpha)
 }
 
 /// Each value's mean over the neighbours within the picture, weighted by the Gaussian up to [`Settings::filter_radius`] in each direction.
@@ -33,6 +38,9 @@ pub(super) fn convolved<const N: usize>(
     size: [u32; 2],
 ) -> Vec<[f64; N]> {
     let radius = i64::from(settings.filter_radius());
+    if radius == 0 {
+        return values.to_vec();
+    }
     let [width, height] = size.map(i64::from);
     let exponent = -0.5 / f64::from(settings.pixel_filter);
     let mean = |i: usize| {

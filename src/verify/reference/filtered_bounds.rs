@@ -1,8 +1,8 @@
-//! Bounds of filtered pixels: those of their neighbours, convolved with the filter.
+//! Bounds of pixels after passes that read neighbours, eye-dome lighting and the filter, from bounds of the pixels before them.
 
-use super::Value;
 use super::filter::convolved;
-use crate::settings::{Alpha, Settings};
+use super::{Projector, Value, edl};
+use crate::settings::{Alpha, Shading};
 
 /// Range of a pixel's values before the filter, and the tolerance of its colour.
 #[derive(Clone, Copy, Debug)]
@@ -11,6 +11,11 @@ pub(super) struct PixelRange {
     low: [f64; 4],
     /// Greatest.
     high: [f64; 4],
+    /// Distances of the nearest and the farthest surface that it may show; infinite and 0 if there is none.
+    near: f64,
+    far: f64,
+    /// Whether it may show no surface.
+    may_be_empty: bool,
     /// See [`super::Tolerance::colour`].
     limit: f64,
 }
@@ -26,16 +31,25 @@ pub(super) struct FilteredBounds {
 impl PixelRange {
     /// The range of no value, with this tolerance.
     pub fn new(limit: f64) -> Self {
-        Self { low: [f64::INFINITY; 4], high: [f64::NEG_INFINITY; 4], limit }
+        let [low, high] = [f64::INFINITY, f64::NEG_INFINITY].map(|end| [end; 4]);
+        Self { low, high, near: f64::INFINITY, far: 0.0, may_be_empty: false, limit }
     }
 
     /// The range of pixels whose value is unknown: any colour is admissible.
     pub fn unknown() -> Self {
-        Self { low: [f64::NEG_INFINITY; 4], high: [f64::INFINITY; 4], limit: f64::INFINITY }
+        let [low, high] = [f64::NEG_INFINITY, f64::INFINITY].map(|end| [end; 4]);
+        let [near, far] = [f64::MIN_POSITIVE, f64::INFINITY];
+        Self { low, high, near, far, may_be_empty: true, limit: f64::INFINITY }
     }
 
-    /// The range with another admissible value, of this tolerance.
-    pub fn with(mut self, value: &Value, limit: f64) -> Self {
+    /// The range with another admissible value, of this tolerance and of this relative error of the distance.
+    pub fn with(mut self, value: &Value, limit: f64, depth_error: f64) -> Self {
+        if value.covered {
+            self.near = self.near.min(value.depth * (1.0 - depth_error));
+            self.far = self.far.max(value.depth * (1.0 + depth_error));
+        } else {
+            self.may_be_empty = true;
+        }
         let [r, g, b, a] = value.colour;
         for (k, channel) in [a * r, a * g, a * b, a].into_iter().enumerate() {
             self.low[k] = self.low[k].min(channel);
@@ -45,15 +59,40 @@ impl PixelRange {
         self
     }
 
+    /// The range if the colour is multiplied by a number from `least` to `most`.
+    fn times(&mut self, [least, most]: [f64; 2]) {
+        for k in 0..3 {
+            let ends = [self.low[k], self.high[k]];
+            self.low[k] = ends.map(|end| end * if end < 0.0 { most } else { least })[0];
+            self.high[k] = ends.map(|end| end * if end < 0.0 { least } else { most })[1];
+        }
+    }
+
     fn to_array(self) -> [f64; 9] {
-        let PixelRange { low: [a, b, c, d], high: [e, f, g, h], limit } = self;
+        let PixelRange { low: [a, b, c, d], high: [e, f, g, h], limit, .. } = self;
         [a, b, c, d, e, f, g, h, limit]
     }
 }
 
+/// The ranges under eye-dome lighting.
+fn darken(projector: &Projector, pixels: &mut [PixelRange], size: [u32; 2]) {
+    let [nears, fars] =
+        [|p: &PixelRange| p.near, |p: &PixelRange| p.far].map(|of| pixels.iter().map(of).collect::<Vec<_>>());
+    let emptied: Vec<f64> = pixels.iter().map(|p| if p.may_be_empty { 0.0 } else { p.far }).collect();
+    let least = edl::factors(projector, size, &fars, &nears);
+    let most = edl::factors(projector, size, &nears, &emptied);
+    for (pixel, factors) in pixels.iter_mut().zip(least.into_iter().zip(most)) {
+        pixel.times(factors.into());
+    }
+}
+
 impl FilteredBounds {
-    /// Convolves the ranges of a picture of `size` px.
-    pub fn new(settings: &Settings, pixels: Vec<PixelRange>, size: [u32; 2]) -> Self {
+    /// The ranges of a picture of `size` px after the passes.
+    pub fn new(projector: &Projector, mut pixels: Vec<PixelRange>, size: [u32; 2]) -> Self {
+        let settings = &projector.settings;
+        if settings.shading == Shading::Edl {
+            darken(projector, &mut pixels, size);
+        }
         let ranges: Vec<_> = pixels.into_iter().map(PixelRange::to_array).collect();
         Self {
             ranges: convolved(settings, &ranges, size),

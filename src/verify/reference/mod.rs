@@ -2,7 +2,8 @@
 //!
 //! Its functions are named as the GPU passes and share no code with them. [`Projector::footprint`] projects a surfel to
 //! a splat, `sides` drops those of the far side of closed surfaces, `visibility` finds the depth up to which splats are blended, `coverage` the covered fraction of each pixel.
-//! `attribute` sums the visible splats, or `nearest` takes the first one; `normalize` divides and shades, `behind` mixes the surface behind into pixels at edges, `filter` filters.
+//! `attribute` sums the visible splats, or `nearest` takes the first one; `normalize` divides and shades, `behind` mixes the surface behind into pixels at edges,
+//! `edl` darkens, and `filter` filters.
 //! [`ErrorBounds`] finds the pixels that float32 rounding can change, with every value they may take, from the float64
 //! frame alone; [`compare`] applies both.
 //!
@@ -18,6 +19,7 @@ mod compare;
 mod conic;
 mod coverage;
 mod depth_range;
+mod edl;
 mod ellipse;
 mod error_bounds;
 mod error_model;
@@ -41,6 +43,7 @@ mod tolerance;
 mod visibility;
 
 pub use compare::{Comparison, Expected, Failure, compare};
+pub use edl::darkened;
 pub use error_bounds::{Admissible, ErrorBounds};
 pub use filter::filtered;
 pub use footprint::{Culled, ScreenClip, Splat, Surfel, TurnLine, footprint};
@@ -148,7 +151,7 @@ pub fn render<'a>(
     }
     if let Some(rules) = settings.pull_push {
         let frame = pull_push::render(parts, camera, size, settings, rules, progress)?;
-        return Ok(filter::pass(settings, frame));
+        return Ok(after_light(&Projector::new(camera, size, settings)?, frame));
     }
     if parts.has_texture() {
         return render(&parts.baked(), camera, size, settings, progress);
@@ -156,7 +159,12 @@ pub fn render<'a>(
     let projector = Projector::new(camera, size, settings)?;
     let scene = sides::pass(&projector, ProjectedScene::project(&projector, surfels), size);
     let frame = draw(&projector, &scene, &Bands::new(&projector, &scene, size), progress);
-    if progress.is_cancelled() { Err(Error::Cancelled) } else { Ok(filter::pass(settings, frame)) }
+    if progress.is_cancelled() { Err(Error::Cancelled) } else { Ok(after_light(&projector, frame)) }
+}
+
+/// The passes after shading.
+fn after_light(projector: &Projector, frame: Frame) -> Frame {
+    filter::pass(&projector.settings, edl::pass(projector, frame))
 }
 
 /// The values of a band's pixels.

@@ -77,7 +77,7 @@ pub(super) fn resolve(projector: &Projector, at: DVec2, sums: Option<&Sums>, alp
                 Shade::Splat | Shade::Pixel => lit(lighting, shine, colour, normal, viewer),
             }
         }
-        Shading::Colour => colour,
+        Shading::Colour | Shading::Edl => colour,
         Shading::Normal => normal,
         Shading::Depth => DVec3::splat(depth),
         Shading::Overlap | Shading::Weight => DVec3::splat(sums.weight),
@@ -85,11 +85,11 @@ pub(super) fn resolve(projector: &Projector, at: DVec2, sums: Option<&Sums>, alp
     Value { covered: true, colour: picture_pixel(projector, shown, alpha), depth, normal: normal.to_array() }
 }
 
-/// A pixel of the picture; the pass `filter` blends filtered pixels with the background itself.
+/// A pixel of the picture, unless a later pass blends with the background.
 pub(super) fn picture_pixel(projector: &Projector, shown: DVec3, alpha: f64) -> [f64; 4] {
-    match projector.settings.filter_radius() {
-        0 => blended(&projector.settings, shown, alpha),
-        _ => shown.extend(alpha).to_array(),
+    match projector.settings.has_late_background() {
+        false => blended(&projector.settings, shown, alpha),
+        true => shown.extend(alpha).to_array(),
     }
 }
 
@@ -103,7 +103,7 @@ pub(super) fn blended(settings: &Settings, shown: DVec3, alpha: f64) -> [f64; 4]
 /// The value of an empty pixel.
 pub(super) fn uncovered(projector: &Projector) -> Value {
     let colour = match projector.settings.background {
-        Some([r, g, b]) if projector.settings.filter_radius() == 0 => [r.into(), g.into(), b.into(), 1.0],
+        Some([r, g, b]) if !projector.settings.has_late_background() => [r.into(), g.into(), b.into(), 1.0],
         _ => [0.0; 4],
     };
     Value { covered: false, colour, depth: 0.0, normal: [0.0; 3] }

@@ -110,7 +110,7 @@ impl Projector {
     }
 
     /// Width of a pixel at distance 1 in perspective, at every distance otherwise: of the larger side.
-    fn pixel_width(&self) -> f64 {
+    pub(super) fn pixel_width(&self) -> f64 {
         let rays = if self.depth.perspective { &self.steps } else { &self.starts };
         rays.y_axis.length().max(rays.z_axis.length())
     }

@@ -41,7 +41,7 @@ use crate::error::{Error, Result};
 use crate::geometry::Camera;
 use crate::picture::Picture;
 use crate::progress::Progress;
-use crate::settings::Settings;
+use crate::settings::{Settings, Shading};
 use band::Plan;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -97,6 +97,10 @@ pub fn render<S: Traceable + ?Sized>(
         return Err(Error::Usage(format!(
             "an exact image of {width}x{height} px: give at most {MOST_PIXELS} pixels"
         )));
+    }
+    if settings.shading == Shading::Edl {
+        let text = "eye-dome lighting darkens pixels, and has no exact picture: shade by color, or lit";
+        return Err(Error::Usage(text.into()));
     }
     let eye = Eye::new(scene, camera, settings, size)?;
     let plan = Plan::new(&eye, size, settings.shading, options);

@@ -27,7 +27,7 @@ impl Sample {
 /// Indices of the values whose error is bounded.
 pub fn exact(shading: Shading) -> &'static [usize] {
     match shading {
-        Shading::Lit | Shading::Colour => &[0, 1, 2, 3],
+        Shading::Lit | Shading::Colour | Shading::Edl => &[0, 1, 2, 3],
         Shading::Normal => &[0, 4, 5, 6],
         Shading::Depth | Shading::Overlap | Shading::Weight => &[0],
     }

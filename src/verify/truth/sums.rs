@@ -152,7 +152,9 @@ fn resolve(cell: &Cell, depth: f32, settings: &Settings) -> ([f32; 4], [f32; 3])
     let normal = DVec3::new(cell[4], cell[5], cell[6]).normalize_or_zero().as_vec3().to_array();
     let light = DVec3::new(cell[1], cell[2], cell[3]) / covered;
     let shown = match settings.shading {
-        Shading::Lit | Shading::Colour => return (over(light, covered, settings.background), normal),
+        Shading::Lit | Shading::Colour | Shading::Edl => {
+            return (over(light, covered, settings.background), normal);
+        }
         Shading::Normal => normal,
         Shading::Depth => [depth; 3],
         // The surface counts once.

@@ -55,7 +55,7 @@ fn legend_of(state: &ViewState, range: Option<(Shading, ValueRange)>) -> Option<
     let range = range.filter(|(of, _)| *of == shading).map(|(_, range)| range);
     let from_0 = |range: ValueRange| ValueRange { min: 0.0, max: range.max.max(1.0) };
     let (name, range, colours) = match shading {
-        Shading::Lit | Shading::Colour => {
+        Shading::Lit | Shading::Colour | Shading::Edl => {
             let (name, ColourScale { map, range }) = state.colour_scale()?;
             return Some(Legend { name, range: Some(range), colours: Colours::Map(map) });
         }

@@ -7,12 +7,17 @@ use crate::viewer::choices::Choices;
 use egui::{DragValue, ProgressBar, Slider, SliderClamping, Ui};
 use surfel::Settings;
 use surfel::geometry::{ColourMap, ValueRange};
-use surfel::settings::{Alpha, Choice, Cull};
+use surfel::settings::{Alpha, Choice, Cull, Shading};
 
 /// Shows the panel.
 pub fn show(ui: &mut Ui, choices: &mut Choices<'_>) {
     let settings = &mut *choices.settings;
     choice_combo(ui, "shading", &mut settings.shading, None);
+    if settings.shading == Shading::Edl {
+        let slider = Slider::new(&mut settings.edl, 0.0..=1.0).clamping(SliderClamping::Edits);
+        ui.add(slider.text("strength"))
+            .on_hover_text("How much pixels behind their neighbours are darkened.");
+    }
     colours(ui, choices);
     background(ui, choices);
     radii(ui, choices);

@@ -71,7 +71,7 @@ fn value(frame: &Reconstruction, sample: &Sample, at: DVec2, alpha: f64) -> Valu
             lit_line(lighting, shine, sample.colour, projector.to_world(sample.normal), viewer)
         }
         Shading::Lit => lit(lighting, shine, sample.colour, normal, viewer),
-        Shading::Colour => sample.colour,
+        Shading::Colour | Shading::Edl => sample.colour,
         Shading::Normal => normal,
         Shading::Depth => DVec3::splat(depth),
         // A pixel shows one point, or the reconstruction of several.
