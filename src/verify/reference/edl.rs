@@ -107,7 +107,8 @@ mod tests {
                 .collect();
             factors(&projector, [size; 2], &depths, &depths)[(size * (size / 2) + size / 2) as usize]
         };
-        let expected = (-3f64.sqrt() / 8.0 * 2.0f64).exp();
+        // A neighbour at the side, and two on diagonals.
+        let expected = (-3f64.sqrt() * (1.0 + 2f64.sqrt()) / 8.0).exp();
         for (distance, size) in [(1.0, 301), (50.0, 301), (1.0, 1201)] {
             let found = dark(distance, size);
             assert!((found - expected).abs() < 5e-3, "{distance} {size}: {found}, {expected}");
