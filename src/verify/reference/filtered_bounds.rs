@@ -59,12 +59,11 @@ impl PixelRange {
         self
     }
 
-    /// The range if the colour is multiplied by a number from `least` to `most`.
+    /// Multiplies the colour by any number from `least` to `most`, at least 0.
     fn times(&mut self, [least, most]: [f64; 2]) {
         for k in 0..3 {
-            let ends = [self.low[k], self.high[k]];
-            self.low[k] = ends.map(|end| end * if end < 0.0 { most } else { least })[0];
-            self.high[k] = ends.map(|end| end * if end < 0.0 { least } else { most })[1];
+            self.low[k] *= if self.low[k] < 0.0 { most } else { least };
+            self.high[k] *= if self.high[k] < 0.0 { least } else { most };
         }
     }
 
