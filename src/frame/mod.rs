@@ -50,6 +50,7 @@ mod slicing;
 mod splat_buffers;
 pub(crate) mod splat_list;
 mod surfel_order;
+pub(crate) mod target_descriptions;
 pub(crate) mod targets;
 mod tile_list;
 pub mod times;

@@ -4,7 +4,7 @@ use super::methods::{Path, passes};
 use super::pass::{Commands, Pass, Program, Programs, Stages};
 use super::recording::{Pipeline, Pipelines as PassPipelines};
 use super::variant::{SceneVariant, Variant};
-use super::{pyramids, targets};
+use super::{pyramids, target_descriptions};
 use crate::error::Result;
 use crate::vk::shaders;
 use crate::vk::{
@@ -214,7 +214,7 @@ impl Pipelines {
                     let coverage = variant.coverage.then_some(&shaders::resource::COVERAGE);
                     host.resources.iter().copied().chain(coverage).collect()
                 }
-                None => targets::shader_resources(variant),
+                None => target_descriptions::shader_resources(variant),
             },
             _ => {
                 let written = declared().any(|resource| resource == &shaders::resource::TO_IMAGE0);

@@ -5,7 +5,7 @@ use super::passes::order;
 use super::renderer::RenderOptions;
 use super::splat_buffers::SPLAT;
 use super::splat_list::{ATTRIBUTE_ROW, BOX};
-use super::targets::per_pixel;
+use super::target_descriptions::per_pixel;
 use super::variant::Variant;
 use crate::scene::Streams;
 use crate::settings::Rasterizer;

@@ -3,7 +3,8 @@
 use super::recording::grid_over_pixels;
 use super::renderer::RenderOptions;
 use super::resource::Resource;
-use super::targets::{PerPixel, TargetInfo, pixels_of};
+use super::target_descriptions::PerPixel;
+use super::targets::{TargetInfo, pixels_of};
 use super::variant::Variant;
 use crate::error::Result;
 use crate::settings::Precision;

@@ -1,7 +1,7 @@
 //! Lists of tiles for indirect dispatches (`lib/tile_list.glsl`): those that splats that face away may change, and those with edges.
 
 use super::resource::Resource;
-use super::targets::{Kind, TargetDescription};
+use super::target_descriptions::{Kind, TargetDescription};
 use crate::vk::shaders::layout::ListedTile;
 use crate::vk::shaders::resource;
 use ash::vk::Format;

@@ -7,7 +7,7 @@ use super::renderer::RenderOptions;
 use super::resource::Resource;
 use super::splat_buffers::SPLAT;
 use super::splat_list::{ATTRIBUTE_ROW, BOX};
-use super::targets::{Kind, describe, pixel_size};
+use super::target_descriptions::{Kind, describe, pixel_size};
 use super::variant::{SceneVariant, Variant};
 use crate::scene::{CLUSTER, Streams};
 use crate::settings::{Rasterizer, Settings};

@@ -5,7 +5,7 @@ use super::dependencies::dependencies;
 use crate::error::{Error, Result};
 use crate::frame::RenderOptions;
 use crate::frame::rasterizer::{Fit, rasterizer_for, width_of_sums};
-use crate::frame::targets::sums_format;
+use crate::frame::target_descriptions::sums_format;
 use crate::frame::variant::Variant;
 use crate::scene::Streams;
 use crate::settings::splatting::Visibility;
