@@ -45,7 +45,8 @@ Pixel pixel_of(uvec2 coordinates, bool visible, uint id, float alpha) {
     vec2 centre = vec2(coordinates) + 0.5;
     float key = plane_at(splat.plane_hi, splat.plane_lo, centre - anchor_of(splat));
     if (has_linear_depth()) key = frame.near / key;
-    return normalize_pixel(centre, visible, alpha, vec4(1.0, attributes.attribute0), vec4(frame.key_gain * shown_key(key, splat.key_disc), attributes.attribute1));
+    return normalize_pixel(centre, visible, alpha, vec4(1.0, attributes.attribute0),
+        vec4(frame.key_gain * shown_key(key, splat.key_disc), attributes.attribute1));
 }
 
 void main() {

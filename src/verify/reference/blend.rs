@@ -80,13 +80,14 @@ impl Blend {
             let of = |f: &Fragment| [f.may_pass(depth), f.must_pass(depth), f.is_counted_clipped(depth)];
             (depth.exists(), fragments.iter().map(of).collect::<Vec<_>>())
         };
-        let mut differing: Vec<DepthRange> = Vec::new();
+        let mut differing = Vec::new();
         for depth in depths {
-            if !differing.iter().any(|other| decisions(*other) == decisions(depth)) {
-                differing.push(depth);
+            let decided = decisions(depth);
+            if !differing.iter().any(|(_, other)| *other == decided) {
+                differing.push((depth, decided));
             }
         }
-        Self { depths: differing, fragments }
+        Self { depths: differing.into_iter().map(|(depth, _)| depth).collect(), fragments }
     }
 
     /// Splits the fragments that `depth` admits, of those that do not pass the depth `front` of the surface before this one: the sum of the
