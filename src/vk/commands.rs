@@ -1,5 +1,6 @@
 //! A command buffer with its pool and fence.
 
+use super::command_pool::CommandPool;
 use super::lock;
 use super::timestamps::Timestamps;
 use super::{Device, PassTime, Recorder};
@@ -9,7 +10,7 @@ use std::sync::Arc;
 
 /// A command buffer that is recorded, submitted and waited for repeatedly.
 pub struct Commands {
-    pool: vk::CommandPool,
+    pool: CommandPool,
     cmd: vk::CommandBuffer,
     fence: vk::Fence,
     timestamps: Option<Timestamps>,
@@ -22,34 +23,13 @@ pub struct Commands {
 impl Commands {
     /// Creates the command buffer; with `profile`, passes are timed if the device has timestamps. Returns an error on an external device.
     pub fn new(device: &Arc<Device>, profile: bool) -> Result<Self> {
-        let (_, family) = device.queue()?;
+        let pool = CommandPool::new(device)?;
+        let cmd = pool.allocate()?;
         let timestamps = if profile { Timestamps::new(device)? } else { None };
-        let mut commands = Self {
-            pool: vk::CommandPool::null(),
-            cmd: vk::CommandBuffer::null(),
-            fence: vk::Fence::null(),
-            timestamps,
-            timed: profile,
-            recording: false,
-            device: device.clone(),
-        };
-        let pool = vk::CommandPoolCreateInfo::default().queue_family_index(family);
-        // SAFETY: all infos are valid; what is made is destroyed in `drop`.
-        unsafe {
-            commands.pool =
-                device.raw.create_command_pool(&pool, None).map_err(Error::vulkan("vkCreateCommandPool"))?;
-            let buffer =
-                vk::CommandBufferAllocateInfo::default().command_pool(commands.pool).command_buffer_count(1);
-            commands.cmd = device
-                .raw
-                .allocate_command_buffers(&buffer)
-                .map_err(Error::vulkan("vkAllocateCommandBuffers"))?[0];
-            commands.fence = device
-                .raw
-                .create_fence(&vk::FenceCreateInfo::default(), None)
-                .map_err(Error::vulkan("vkCreateFence"))?;
-        }
-        Ok(commands)
+        // SAFETY: the info is valid; the fence is destroyed in `drop`.
+        let fence = unsafe { device.raw.create_fence(&vk::FenceCreateInfo::default(), None) }
+            .map_err(Error::vulkan("vkCreateFence"))?;
+        Ok(Self { pool, cmd, fence, timestamps, timed: profile, recording: false, device: device.clone() })
     }
 
     /// Enables or disables the timing of later runs, if created with `profile`: the barriers around each timed pass cost time themselves.
@@ -59,14 +39,8 @@ impl Commands {
 
     /// Begins recording; discards what was recorded before.
     pub fn begin(&mut self) -> Result<Recorder<'_>> {
-        let raw = &self.device.raw;
-        let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
-        // SAFETY: the last submission was waited for, so the pool's only buffer is free to be recorded anew.
-        unsafe {
-            raw.reset_command_pool(self.pool, vk::CommandPoolResetFlags::empty())
-                .map_err(Error::vulkan("vkResetCommandPool"))?;
-            raw.begin_command_buffer(self.cmd, &begin).map_err(Error::vulkan("vkBeginCommandBuffer"))?;
-        }
+        // SAFETY: the last submission was waited for.
+        unsafe { self.pool.begin(self.cmd) }?;
         self.recording = true;
         Ok(Recorder::new(&self.device, self.cmd, self.timestamps.as_mut().filter(|_| self.timed)))
     }
@@ -108,10 +82,7 @@ impl Drop for Commands {
     fn drop(&mut self) {
         // A lost device has nothing left to wait for.
         let _ = self.device.wait_idle();
-        // SAFETY: every run is waited for; after a failed one the device is idle or lost. Null handles are ignored.
-        unsafe {
-            self.device.raw.destroy_fence(self.fence, None);
-            self.device.raw.destroy_command_pool(self.pool, None);
-        }
+        // SAFETY: every run is waited for; after a failed one the device is idle or lost.
+        unsafe { self.device.raw.destroy_fence(self.fence, None) };
     }
 }

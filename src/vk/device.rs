@@ -3,6 +3,7 @@
 use super::choose::{DeviceDescription, choose};
 use super::descriptor_pool::DescriptorPools;
 use super::instance::Instance;
+use super::labels::Labels;
 use super::limits::{Capabilities, DeviceLimits};
 use super::lock;
 use super::memory::{self, MemoryBlocks};
@@ -14,8 +15,8 @@ use super::set_layout::SetLayouts;
 use super::surface::{self, Surface, Window};
 use super::tracker::History;
 use crate::error::{Error, Result};
-use ash::{ext::debug_utils, vk};
-use std::ffi::{CStr, CString};
+use ash::vk;
+use std::ffi::CStr;
 use std::mem::ManuallyDrop;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -43,7 +44,7 @@ pub struct Device {
     pub(super) pipeline_cache: ManuallyDrop<PipelineCache>,
     /// Live pipelines.
     pub(super) pipelines: PipelinePool,
-    pub(super) labels: Option<debug_utils::Device>,
+    pub(super) labels: Option<Labels>,
     pub(super) history: History,
     pub(super) descriptor_pools: DescriptorPools,
     /// Live descriptor set layouts.
@@ -151,7 +152,7 @@ impl Device {
             .map_err(|error| Error::NoDevice(format!("{}: {error}", description.name)))?;
         let pipeline_cache =
             PipelineCache::load(&instance.raw, physical, &raw, options.pipeline_cache.as_deref())?;
-        let labels = instance.debug_utils.then(|| debug_utils::Device::new(&instance.raw, &raw));
+        let labels = instance.debug_utils.then(|| Labels::new(&instance.raw, &raw));
         log::info!("device: {} ({}, {})", description.name, description.kind, description.driver);
         Ok(Arc::new(Self {
             raw,
@@ -173,10 +174,10 @@ impl Device {
 
     /// Names an object of the device for debuggers and the validation layers.
     pub(super) fn name(&self, object: impl vk::Handle, name: &str) {
-        let Some((labels, name)) = self.labels.as_ref().zip(CString::new(name).ok()) else { return };
-        let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(object).object_name(&name);
-        // SAFETY: the object is of the device and alive. A failure to name it is harmless.
-        let _ = unsafe { labels.set_debug_utils_object_name(&info) };
+        if let Some(labels) = &self.labels {
+            // SAFETY: the object is of the device and alive.
+            unsafe { labels.name(object, name) };
+        }
     }
 
     /// Begins a debug label, if labels are enabled.
@@ -184,15 +185,10 @@ impl Device {
     /// # Safety
     /// `cmd` is of the device and recording; [`Device::end_label`] ends the label.
     pub(super) unsafe fn begin_label(&self, cmd: vk::CommandBuffer, label: &'static str) {
-        let Some(labels) = &self.labels else { return };
-        // Every pass of every frame does this: no allocation.
-        let mut name = [0; 32];
-        let length = label.len().min(name.len() - 1);
-        name[..length].copy_from_slice(&label.as_bytes()[..length]);
-        let Ok(name) = CStr::from_bytes_until_nul(&name) else { return };
-        let info = vk::DebugUtilsLabelEXT::default().label_name(name);
-        // SAFETY: by the caller.
-        unsafe { labels.cmd_begin_debug_utils_label(cmd, &info) };
+        if let Some(labels) = &self.labels {
+            // SAFETY: by the caller.
+            unsafe { labels.begin(cmd, label) };
+        }
     }
 
     /// # Safety
@@ -200,7 +196,7 @@ impl Device {
     pub(super) unsafe fn end_label(&self, cmd: vk::CommandBuffer) {
         if let Some(labels) = &self.labels {
             // SAFETY: by the caller.
-            unsafe { labels.cmd_end_debug_utils_label(cmd) };
+            unsafe { labels.end(cmd) };
         }
     }
 

@@ -3,6 +3,7 @@
 use super::choose::DeviceDescription;
 use super::descriptor_pool::DescriptorPools;
 use super::device::{Device, Owner, UsageCounters};
+use super::labels::Labels;
 use super::limits::{Capabilities, DeviceLimits};
 use super::memory::{self, MemoryBlocks, MemorySource};
 use super::pipeline_cache::PipelineCache;
@@ -11,7 +12,7 @@ use super::requirements::{Abilities, QUEUE};
 use super::set_layout::SetLayouts;
 use super::tracker::History;
 use crate::error::{Error, Result};
-use ash::{ext::debug_utils, vk};
+use ash::vk;
 use std::mem::ManuallyDrop;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -86,7 +87,7 @@ impl Device {
             memory: ManuallyDrop::new(memory),
             pipeline_cache: ManuallyDrop::new(pipeline_cache),
             pipelines: PipelinePool::default(),
-            labels: external.labels.then(|| debug_utils::Device::new(instance, device)),
+            labels: external.labels.then(|| Labels::new(instance, device)),
             history: History::default(),
             descriptor_pools: DescriptorPools::default(),
             set_layouts: SetLayouts::default(),

@@ -15,7 +15,6 @@ mod buffer;
 #[cfg(feature = "window")]
 mod capture;
 mod choose;
-#[cfg(feature = "window")]
 mod command_pool;
 mod commands;
 mod descriptor_pool;
@@ -26,6 +25,7 @@ mod encoder;
 mod external_device;
 mod image;
 mod instance;
+mod labels;
 mod limits;
 mod memory;
 #[cfg(feature = "window")]

@@ -1,6 +1,7 @@
 //! Resources of one frame in flight: a command buffer, a fence and a semaphore.
 
 use super::Device;
+use super::command_pool::CommandPool;
 use super::lock;
 use super::presenter::Presented;
 use crate::error::{Error, Result};
@@ -9,7 +10,7 @@ use std::sync::Arc;
 
 /// One of the frames in flight.
 pub(super) struct Slot {
-    pool: vk::CommandPool,
+    pool: CommandPool,
     pub(super) cmd: vk::CommandBuffer,
     /// Signalled when the swapchain image is available.
     pub(super) acquired: vk::Semaphore,
@@ -19,24 +20,14 @@ pub(super) struct Slot {
 
 impl Slot {
     pub(super) fn new(device: &Arc<Device>) -> Result<Self> {
-        let (_, family) = device.queue()?;
-        let mut slot = Self {
-            pool: vk::CommandPool::null(),
-            cmd: vk::CommandBuffer::null(),
-            acquired: vk::Semaphore::null(),
-            done: vk::Fence::null(),
-            device: device.clone(),
-        };
-        let pool = vk::CommandPoolCreateInfo::default().queue_family_index(family);
+        let pool = CommandPool::new(device)?;
+        let cmd = pool.allocate()?;
+        let null = (vk::Semaphore::null(), vk::Fence::null());
+        let mut slot = Self { pool, cmd, acquired: null.0, done: null.1, device: device.clone() };
         let signalled = vk::FenceCreateInfo::default().flags(vk::FenceCreateFlags::SIGNALED);
         let raw = &device.raw;
         // SAFETY: all infos are valid; what is made is destroyed in `drop`.
         unsafe {
-            slot.pool = raw.create_command_pool(&pool, None).map_err(Error::vulkan("vkCreateCommandPool"))?;
-            let buffer =
-                vk::CommandBufferAllocateInfo::default().command_pool(slot.pool).command_buffer_count(1);
-            let buffers = raw.allocate_command_buffers(&buffer);
-            slot.cmd = buffers.map_err(Error::vulkan("vkAllocateCommandBuffers"))?[0];
             let semaphore = raw.create_semaphore(&vk::SemaphoreCreateInfo::default(), None);
             slot.acquired = semaphore.map_err(Error::vulkan("vkCreateSemaphore"))?;
             slot.done = raw.create_fence(&signalled, None).map_err(Error::vulkan("vkCreateFence"))?;
@@ -72,14 +63,8 @@ impl Slot {
     }
 
     fn begin(&self, image: vk::Image) -> Result<()> {
-        let once = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
-        let raw = &self.device.raw;
         // SAFETY: nothing of the pool is under way.
-        unsafe {
-            raw.reset_command_pool(self.pool, vk::CommandPoolResetFlags::empty())
-                .map_err(Error::vulkan("vkResetCommandPool"))?;
-            raw.begin_command_buffer(self.cmd, &once).map_err(Error::vulkan("vkBeginCommandBuffer"))?;
-        }
+        unsafe { self.pool.begin(self.cmd) }?;
         self.transition(image, [vk::ImageLayout::UNDEFINED, vk::ImageLayout::TRANSFER_DST_OPTIMAL]);
         Ok(())
     }
@@ -139,7 +124,6 @@ impl Drop for Slot {
         unsafe {
             self.device.raw.destroy_fence(self.done, None);
             self.device.raw.destroy_semaphore(self.acquired, None);
-            self.device.raw.destroy_command_pool(self.pool, None);
         }
     }
 }

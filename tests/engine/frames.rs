@@ -374,6 +374,24 @@ fn repeated_frames_are_the_same_picture() {
 }
 
 #[test]
+fn scenes_and_renderers_come_and_go_while_other_threads_record() {
+    let Some(device) = new_device(DeviceLimits::default()) else { return };
+    let surfels = sphere(10);
+    let small = RenderOptions { size: [8, 8], ..Default::default() };
+    let picture = picture_on(&device, &surfels, small);
+    std::thread::scope(|threads| {
+        for _ in 0..12 {
+            threads.spawn(|| {
+                for _ in 0..60 {
+                    assert!(picture_on(&device, &surfels, small) == picture);
+                }
+            });
+        }
+    });
+    assert_silent(&device);
+}
+
+#[test]
 fn non_finite_surfels_are_culled_and_counted() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let whole = sphere(3_000);

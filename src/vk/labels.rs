@@ -1,0 +1,60 @@
+//! Debug labels of command buffers and names of objects, for debuggers and the validation layers.
+
+use super::lock;
+use ash::{ext::debug_utils, vk};
+use std::ffi::{CStr, CString};
+use std::sync::{Mutex, MutexGuard};
+
+/// The functions of VK_EXT_debug_utils of a device.
+pub(super) struct Labels {
+    functions: debug_utils::Device,
+    /// Validation layers (1.3.239, for one) keep the labels of all command buffers in one table, and remove a destroyed command buffer's
+    /// without locking it. What looks into the table must not run meanwhile, although Vulkan asks for no synchronization of different pools.
+    table: Mutex<()>,
+}
+
+impl Labels {
+    pub(super) fn new(instance: &ash::Instance, device: &ash::Device) -> Self {
+        Self { functions: debug_utils::Device::new(instance, device), table: Mutex::new(()) }
+    }
+
+    /// Held while command buffers are begun or destroyed.
+    pub(super) fn lock(&self) -> MutexGuard<'_, ()> {
+        lock(&self.table)
+    }
+
+    /// Names an object.
+    ///
+    /// # Safety
+    /// The object is of the device and alive.
+    pub(super) unsafe fn name(&self, object: impl vk::Handle, name: &str) {
+        let Ok(name) = CString::new(name) else { return };
+        let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(object).object_name(&name);
+        // SAFETY: by the caller. A failure to name it is harmless.
+        let _ = unsafe { self.functions.set_debug_utils_object_name(&info) };
+    }
+
+    /// Begins a label.
+    ///
+    /// # Safety
+    /// `cmd` is of the device and recording; [`Labels::end`] ends the label.
+    pub(super) unsafe fn begin(&self, cmd: vk::CommandBuffer, label: &'static str) {
+        // Every pass of every frame does this: no allocation.
+        let mut name = [0; 32];
+        let length = label.len().min(name.len() - 1);
+        name[..length].copy_from_slice(&label.as_bytes()[..length]);
+        let Ok(name) = CStr::from_bytes_until_nul(&name) else { return };
+        let info = vk::DebugUtilsLabelEXT::default().label_name(name);
+        let _alone = self.lock();
+        // SAFETY: by the caller.
+        unsafe { self.functions.cmd_begin_debug_utils_label(cmd, &info) };
+    }
+
+    /// # Safety
+    /// [`Labels::begin`] began one.
+    pub(super) unsafe fn end(&self, cmd: vk::CommandBuffer) {
+        let _alone = self.lock();
+        // SAFETY: by the caller.
+        unsafe { self.functions.cmd_end_debug_utils_label(cmd) };
+    }
+}
