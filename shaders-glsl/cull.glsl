@@ -1,8 +1,11 @@
-// Cull: lists the clusters of surfels that may have splats, by their bounding boxes and normal cones.
+// Cull: lists the clusters of surfels that may have splats, by their bounding boxes and normal cones. The CPU has culled groups of them
+// (src/frame/group_culling.rs).
 #version 450
 #pragma variant TILES
 #extension GL_GOOGLE_include_directive : require
 
+uint group_instance;
+#define INSTANCE group_instance
 #include "lib/instance.glsl"
 #include "lib/footprint_kind.glsl"
 #ifdef TILES
@@ -28,6 +31,18 @@ struct Cluster {
     vec4 axis; // of the normal cone
 };
 
+// Consecutive clusters of an instance.
+struct Group {
+    uint first;    // first cluster, in the chunk
+    uint count;    // clusters
+    uint slot;     // of the first cluster in the chunk's range of the frame's splat list
+    uint instance; // in the descriptor set, or NO_INSTANCE
+};
+
+// Instance of a group without clusters, whose slots are empty.
+const uint NO_INSTANCE = ~0u;
+
+layout(set = 0, binding = 23, std430) readonly buffer Groups { Group groups[]; };
 layout(set = 0, binding = 22, std430) readonly buffer Clusters { Cluster clusters[]; };
 #ifdef TILES
 layout(set = 1, binding = 6, std430) writeonly buffer Boxes { Box boxes[]; };
@@ -114,29 +129,30 @@ uint cull_reason(Cluster cluster, uint first, uint last) {
     return is_outside(3.0 * largest_stretch() * radius + moved, low, high) ? OUTSIDE : DRAWN;
 }
 
+// A workgroup per group, an invocation per cluster.
 void main() {
-    uint cluster = gl_GlobalInvocationID.x, first = CLUSTER_SIZE * cluster;
-    if (first >= chunk.instance_stride) return;
-    if (cluster == 0 && gl_WorkGroupID.z == 0) layers = 1;
-    bool exists = first < chunk.count && instance_index() < chunk.instance_count;
-    uint reason = OUTSIDE;
-    if (exists && BOUNDED) {
-        uint id = chunk.first_id + first;
-        reason = cull_reason(clusters[id / CLUSTER_SIZE], id, id + min(chunk.count - first, CLUSTER_SIZE) - 1);
-    } else if (exists) {
-        reason = DRAWN;
-    }
+    uint index = CLUSTER_COLUMNS * gl_WorkGroupID.y + gl_WorkGroupID.x, lane = gl_LocalInvocationID.x;
+    if (index >= chunk.group_count) return;
+    Group group = groups[index];
+    if (lane >= group.count) return;
+    if (index == 0 && lane == 0) layers = 1;
+    bool exists = group.instance != NO_INSTANCE;
+    group_instance = exists ? group.instance : 0;
+    uint cluster = group.first + lane, first = CLUSTER_SIZE * cluster, id = chunk.first_id + first;
+    uint surfels = exists ? min(chunk.count - first, CLUSTER_SIZE) : 0;
+    uint reason = exists ? DRAWN : OUTSIDE;
+    if (exists && BOUNDED) reason = cull_reason(clusters[id / CLUSTER_SIZE], id, id + surfels - 1);
+    uint slot = group.slot + lane;
 #ifdef TILES
-    uint node = chunk.first_node + (instance_index() * chunk.instance_stride) / CLUSTER_SIZE + cluster;
-    boxes[node] = Box(EMPTY_BOX.xyz, reason == DRAWN ? EMPTY_BOX.w : CULLED_CLUSTER);
+    boxes[chunk.first_node + slot] = Box(EMPTY_BOX.xyz, reason == DRAWN ? EMPTY_BOX.w : CULLED_CLUSTER);
 #endif
     if (reason == DRAWN) {
-        uint index = atomicAdd(visible_count, 1);
-        atomicMax(columns, min(index + 1, CLUSTER_COLUMNS));
-        atomicMax(rows, index / CLUSTER_COLUMNS + 1);
-        visible_clusters[index] = uvec2(cluster, instance_index());
+        uint entry = atomicAdd(visible_count, 1);
+        atomicMax(columns, min(entry + 1, CLUSTER_COLUMNS));
+        atomicMax(rows, entry / CLUSTER_COLUMNS + 1);
+        visible_clusters[entry] = VisibleCluster(cluster, slot, group.instance);
     } else if (exists) {
-        count_cluster(reason, min(chunk.count - first, CLUSTER_SIZE));
+        count_cluster(reason, surfels);
     }
 }
 

@@ -304,7 +304,7 @@ uint surfel_of(uint slot) {
     return slot;
 }
 
-uint slot_of_invocation() {
+uint surfel_of_invocation() {
     return gl_GlobalInvocationID.x;
 }
 
@@ -319,7 +319,7 @@ bool has_surfel(uint slot) {
 #endif
 
 void main() {
-    uint slot = slot_of_invocation();
+    uint slot = surfel_of_invocation();
     if (!has_surfel(slot)) return;
     uint i = surfel_of(slot);
     Splat splat = Splat(vec2(0.0), vec2(1.0, 0.0), 1.0, 0.0, 0, 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);

@@ -68,7 +68,7 @@ float front_key(uvec2 pixel) {
     return texelFetch(visibility_image, ivec2(pixel), 0).r;
 }
 
-uint slot_of_invocation() {
+uint surfel_of_invocation() {
     return gl_GlobalInvocationID.x;
 }
 
@@ -92,7 +92,7 @@ float key_behind(Splat splat) {
 }
 
 void main() {
-    uint slot = slot_of_invocation();
+    uint slot = surfel_of_invocation();
     if (!has_surfel(slot)) return;
     Splat splat = splat_of(slot);
     if (!is_drawn(splat) || !is_back(splat)) return;

@@ -266,7 +266,7 @@ pub static CULL_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("cull_compute.spv"),
     constants: &[0, 1, 2, 15, 37, 64, 73],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBLE_CLUSTERS, true), (&resource::CLUSTERS, false), (&resource::COUNTS, true)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBLE_CLUSTERS, true), (&resource::CLUSTERS, false), (&resource::GROUPS, false), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -276,7 +276,7 @@ pub static CULL_TILES_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("cull_tiles_compute.spv"),
     constants: &[0, 1, 2, 15, 37, 64, 73],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBLE_CLUSTERS, true), (&resource::CLUSTERS, false), (&resource::BOXES, true), (&resource::COUNTS, true)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBLE_CLUSTERS, true), (&resource::CLUSTERS, false), (&resource::GROUPS, false), (&resource::BOXES, true), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -1188,6 +1188,15 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
+    /// `Groups`, first in `shaders-glsl/cull.glsl`.
+    pub static GROUPS: Resource = Resource {
+        name: "Groups",
+        set: 0,
+        binding: 23,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
     /// `IncompleteFrame`, first in `shaders-glsl/attribute.glsl`.
     pub static INCOMPLETE_FRAME: Resource = Resource {
         name: "IncompleteFrame",
@@ -1808,7 +1817,7 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(AtomicOptions, seed) == 4);
     const _: () = assert!(std::mem::size_of::<AtomicOptions>() == 8);
 
-    /// `Chunk`, 40 bytes, first in `shaders-glsl/attribute.glsl`.
+    /// `Chunk`, 44 bytes, first in `shaders-glsl/attribute.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Chunk {
@@ -1832,6 +1841,8 @@ pub mod layout {
         pub instance_count: u32,
         /// Byte 36.
         pub first_node: u32,
+        /// Byte 40.
+        pub group_count: u32,
     }
     const _: () = assert!(std::mem::offset_of!(Chunk, count) == 0);
     const _: () = assert!(std::mem::offset_of!(Chunk, first_id) == 4);
@@ -1843,7 +1854,8 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Chunk, attribute_rows) == 28);
     const _: () = assert!(std::mem::offset_of!(Chunk, instance_count) == 32);
     const _: () = assert!(std::mem::offset_of!(Chunk, first_node) == 36);
-    const _: () = assert!(std::mem::size_of::<Chunk>() == 40);
+    const _: () = assert!(std::mem::offset_of!(Chunk, group_count) == 40);
+    const _: () = assert!(std::mem::size_of::<Chunk>() == 44);
 
     /// `Cluster`, 48 bytes, first in `shaders-glsl/cull.glsl`.
     #[repr(C)]
@@ -1993,6 +2005,25 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Frame, pixel_width) == 180);
     const _: () = assert!(std::mem::offset_of!(Frame, origin) == 184);
     const _: () = assert!(std::mem::size_of::<Frame>() == 192);
+
+    /// `Group`, 16 bytes, first in `shaders-glsl/cull.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct Group {
+        /// Byte 0.
+        pub first: u32,
+        /// Byte 4.
+        pub count: u32,
+        /// Byte 8.
+        pub slot: u32,
+        /// Byte 12.
+        pub instance: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(Group, first) == 0);
+    const _: () = assert!(std::mem::offset_of!(Group, count) == 4);
+    const _: () = assert!(std::mem::offset_of!(Group, slot) == 8);
+    const _: () = assert!(std::mem::offset_of!(Group, instance) == 12);
+    const _: () = assert!(std::mem::size_of::<Group>() == 16);
 
     /// `Hierarchy`, 72 bytes, first in `shaders-glsl/attribute.glsl`.
     #[repr(C)]
@@ -2357,6 +2388,22 @@ pub mod layout {
     }
     const _: () = assert!(std::mem::offset_of!(Views, views) == 0);
     const _: () = assert!(std::mem::size_of::<Views>() == 16320);
+
+    /// `VisibleCluster`, 12 bytes, first in `shaders-glsl/cull.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct VisibleCluster {
+        /// Byte 0.
+        pub cluster: u32,
+        /// Byte 4.
+        pub slot: u32,
+        /// Byte 8.
+        pub instance: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(VisibleCluster, cluster) == 0);
+    const _: () = assert!(std::mem::offset_of!(VisibleCluster, slot) == 4);
+    const _: () = assert!(std::mem::offset_of!(VisibleCluster, instance) == 8);
+    const _: () = assert!(std::mem::size_of::<VisibleCluster>() == 12);
 
     /// `VisibleClusters`, 16 bytes, first in `shaders-glsl/cull.glsl`.
     #[repr(C)]

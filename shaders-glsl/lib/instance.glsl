@@ -19,7 +19,8 @@ layout(push_constant) uniform Chunk {
     uint first_clip;      // index in the frame of the first screen clip in the descriptor set
     uint attribute_rows;  // attribute rows per splat in the frame's list
     uint instance_count;  // instances in this frame, of those in the descriptor set
-    uint first_node;      // node of the first cluster of surfels in the bound levels of the frame's box hierarchy
+    uint first_node;      // node of the first cluster of the range in the bound levels of the frame's box hierarchy
+    uint group_count;     // groups of clusters, of all instances
 } chunk;
 
 #ifdef VERTEX

@@ -48,6 +48,9 @@ layout(set = 0, binding = 1, std430) readonly buffer Splats { uvec4 splat_rows[]
 #if !defined(FRAGMENT) && !defined(TILE_PASS)
 // Index of surfel i's splat in the bound buffer.
 uint splat_index(uint i) {
+#ifdef PER_CLUSTER
+    if (CLUSTERS) return CLUSTER_SIZE * visible.slot + i % CLUSTER_SIZE;
+#endif
     return instance_index() * chunk.instance_stride + i;
 }
 #endif

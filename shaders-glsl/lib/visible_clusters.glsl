@@ -3,28 +3,34 @@
 
 #include "lib/cluster.glsl"
 
+struct VisibleCluster {
+    uint cluster;  // index in the chunk
+    uint slot;     // index in the chunk's range of the frame's splat list
+    uint instance; // in the descriptor set
+};
+
 layout(set = 0, binding = 21, std430) VISIBLE_ACCESS buffer VisibleClusters {
     uint columns;
     uint rows;
     uint layers;
     uint visible_count;
-    uvec2 visible_clusters[]; // index in the chunk, instance
+    VisibleCluster visible_clusters[];
 };
 
 // Clusters per row of the dispatch.
 const uint CLUSTER_COLUMNS = 32768;
 
 #ifdef PER_CLUSTER
-uint cluster_instance;
-#define INSTANCE (CLUSTERS ? cluster_instance : chunk.first_instance + gl_WorkGroupID.z)
+VisibleCluster visible;
+#define INSTANCE (CLUSTERS ? visible.instance : chunk.first_instance + gl_WorkGroupID.z)
 
-// Index of the invocation's surfel, or of its splat in the instance's list; ~0 in workgroups beyond the list. Sets the instance.
-uint slot_of_invocation() {
+// Index in the chunk of the invocation's surfel, or of its entry in the order of surfels; ~0 in workgroups beyond the list. Sets the visible
+// cluster.
+uint surfel_of_invocation() {
     if (!CLUSTERS) return gl_GlobalInvocationID.x;
     uint index = CLUSTER_COLUMNS * gl_WorkGroupID.y + gl_WorkGroupID.x;
     if (index >= visible_count) return ~0u;
-    uvec2 cluster = visible_clusters[index];
-    cluster_instance = cluster.y;
-    return CLUSTER_SIZE * cluster.x + gl_LocalInvocationID.x;
+    visible = visible_clusters[index];
+    return CLUSTER_SIZE * visible.cluster + gl_LocalInvocationID.x;
 }
 #endif

@@ -2,9 +2,11 @@
 
 use crate::error::Result;
 use crate::frame::resource::Resource;
-use crate::frame::scene_resources::{SceneResources, counts_in};
+use crate::frame::scene_resources::{SceneResources, counts_in, sum};
 use crate::frame::{FrameReport, SplatCounts};
+use crate::vk::shaders::layout::Counts;
 use crate::vk::{Access, Buffer, Device, Recorder, Timestamps};
+use bytemuck::Zeroable;
 use std::sync::Arc;
 
 /// Measurements of frames. A measurement that is off costs nothing.
@@ -51,10 +53,20 @@ struct PendingReport {
     /// Number of the frame.
     number: u32,
     times: bool,
-    /// Number of surfels, and size of the counts, bytes.
-    counts: Option<(u64, u64)>,
+    counts: Option<PendingCounts>,
     /// Level of detail, px.
     lod: f32,
+}
+
+/// Counts that are not read yet.
+#[derive(Clone, Copy)]
+struct PendingCounts {
+    /// Number of surfels.
+    surfels: u64,
+    /// Size of the counts, bytes.
+    size: u64,
+    /// Surfels that the CPU has culled.
+    culled: Counts,
 }
 
 impl Reports {
@@ -94,9 +106,12 @@ impl Reports {
         }
         let all = |of: fn(&SceneResources) -> u64| scenes.iter().map(|scene| of(scene)).sum();
         let counted = measured.counts && !scenes.is_empty();
-        let counts: Option<(u64, u64)> =
-            counted.then(|| (all(SceneResources::count), all(SceneResources::counts_size)));
-        let room = counts.map_or(0, |(_, size)| size);
+        let counts = counted.then(|| PendingCounts {
+            surfels: all(SceneResources::count),
+            size: all(SceneResources::counts_size),
+            culled: scenes.iter().map(|scene| scene.culled()).fold(Counts::zeroed(), sum),
+        });
+        let room = counts.map_or(0, |counts| counts.size);
         if slot.counts.as_ref().map_or(0, Buffer::size) < room {
             slot.counts = Some(Buffer::readback(device, "frame counts", room)?);
         }
@@ -171,8 +186,10 @@ impl Slot {
             return Ok(None);
         }
         let counted = self.counts.as_ref().zip(counts);
-        let counts =
-            counted.map(|(buffer, (surfels, size))| (surfels, counts_in(&buffer.bytes()[..size as usize])));
+        let counts = counted.map(|(buffer, pending)| {
+            let counts = counts_in(&buffer.bytes()[..pending.size as usize]);
+            (pending.surfels, sum(counts, pending.culled))
+        });
         let timed = self.timestamps.as_ref().filter(|_| times);
         let pass_times = timed.map_or(Ok(Vec::new()), Timestamps::read)?;
         Ok(Some(FrameReport {

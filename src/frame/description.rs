@@ -1,13 +1,18 @@
 //! Frame description: variant and uniforms, decided from scenes, camera and settings before any resource is created.
 
+use super::distinct::Distinct;
+use super::group_culling::GroupCulling;
 use super::rasterizer::{Fit, rasterizer_of, width_of_sums};
 use super::renderer::RenderOptions;
+use super::scene_resources::batches_of;
+use super::selection::Selection;
 use super::slicing::{Slicing, total_splats_per_tile};
-use super::splat_list::{extent_of_frame, workgroup_of};
+use super::splat_list::{ListExtent, extent_of, padded_instances, workgroup_of};
 use super::uniforms::Uniforms;
 use super::variant::{SceneVariant, Variant};
 use crate::error::{Error, Result};
 use crate::geometry::Camera;
+use crate::scene::Scene;
 use crate::scene::instance::Placed;
 use crate::settings::{RasterizerReason, Settings};
 use crate::vk::Device;
@@ -20,6 +25,8 @@ pub struct Description {
     pub reason: RasterizerReason,
     /// Variants of its scenes.
     pub scenes: Vec<SceneVariant>,
+    /// Of each distinct scene, the groups of clusters that may be drawn.
+    pub selections: Vec<Selection>,
     /// Average splats per covered tile.
     pub splats_per_tile: f64,
     /// Level of detail, px.
@@ -44,13 +51,15 @@ pub fn describe(
     let lod = level_of_detail(scenes, camera, settings, options.size);
     let settings = &Settings { lod, ..settings.clone() };
     let uniforms = Uniforms::new(camera, settings, options.size, scenes)?;
-    let workgroup = workgroup_of(device, extent_of_frame(device, scenes));
+    let perspective = camera.projection()?.perspective;
+    let distinct = Distinct::new(scenes);
+    let (selections, extent) = select(device, &distinct, &uniforms, perspective);
+    let workgroup = workgroup_of(device, extent);
     let splats_per_tile = total_splats_per_tile(scenes, camera, options.size, lod);
     // With a bound on the work of a tile there are no slices.
     let sliced = options.most_splats.is_none() && slicing.needs_slices(scenes, splats_per_tile);
     let fit = Fit::new(device, options, workgroup.is_some(), sliced);
     let (rasterizer, reason) = rasterizer_of(device, options, settings, scenes, fit)?;
-    let perspective = camera.projection()?.perspective;
     let precision = match settings.pull_push {
         Some(_) => options.precision,
         None => width_of_sums(device, options, rasterizer),
@@ -62,7 +71,29 @@ pub fn describe(
     check_lookups(&variant, scenes)?;
     let instanced = !uniforms.instances.is_empty();
     let scenes = streams.into_iter().map(|streams| SceneVariant::new(variant, streams, instanced)).collect();
-    Ok(Description { uniforms, variant, reason, scenes, splats_per_tile, lod })
+    Ok(Description { uniforms, variant, reason, scenes, selections, splats_per_tile, lod })
+}
+
+/// Selects the groups of clusters of each scene that may be drawn; also returns the extent of their splats.
+fn select(
+    device: &Device,
+    distinct: &Distinct<'_>,
+    uniforms: &Uniforms,
+    perspective: bool,
+) -> (Vec<Selection>, ListExtent) {
+    let of_scene = |(scene, instances): (&&Scene, &Vec<usize>)| {
+        let batches = batches_of(device, scene, padded_instances(instances.len() as u64));
+        let culling = |instance: u64| {
+            let view = uniforms.instances.get(instances[instance as usize]).unwrap_or(&uniforms.view);
+            GroupCulling::new(&uniforms.frame, view, perspective, scene.level_table())
+        };
+        let selection = Selection::new(scene, &batches, instances.len() as u64, culling);
+        let extent = extent_of(scene, &batches, &selection.room(None));
+        (selection, extent)
+    };
+    let (selections, extents): (Vec<_>, Vec<_>) =
+        distinct.scenes.iter().zip(&distinct.instances).map(of_scene).unzip();
+    (selections, extents.into_iter().fold(ListExtent::default(), ListExtent::with))
 }
 
 /// The level of detail of a frame, px: that of the settings, or the least one that keeps to the most points.

@@ -30,7 +30,11 @@
 
 mod compact;
 pub(crate) mod description;
+mod distinct;
 pub mod faster;
+mod group_culling;
+mod list_layout;
+mod list_range;
 mod methods;
 pub(crate) mod pass;
 pub(crate) mod passes;
@@ -46,6 +50,7 @@ pub(crate) mod resource;
 pub(crate) mod resources;
 mod scene_cache;
 pub(crate) mod scene_resources;
+pub(crate) mod selection;
 mod slicing;
 mod splat_buffers;
 pub(crate) mod splat_list;

@@ -107,7 +107,7 @@ pub enum Domain {
     Surfels,
     /// One invocation per surfel of the capacity, in all instances.
     SurfelSlots,
-    /// One invocation per cluster of surfels of the capacity, in all instances.
+    /// One workgroup per group of clusters, of all instances, that the CPU has not culled.
     Clusters,
     /// One workgroup per cluster in the list of visible ones.
     VisibleClusters,

@@ -6,7 +6,6 @@ use super::scene_resources::{InstanceRun, SceneResources};
 use super::splat_list::SplatList;
 use super::targets::RenderTargets;
 use super::variant::{SceneVariant, Variant};
-use crate::scene::CLUSTER;
 use crate::vk::shaders::Module;
 use crate::vk::shaders::layout::Hierarchy;
 use crate::vk::{
@@ -41,7 +40,11 @@ fn grid_over_blocks([width, height]: [u32; 2]) -> [u32; 3] {
 
 /// Workgroups for so many invocations, in rows: for shaders that index by both coordinates.
 pub fn grid_over(invocations: u64) -> [u32; 3] {
-    let workgroups = invocations.div_ceil(WORKGROUP) as u32;
+    grid_of(invocations.div_ceil(WORKGROUP) as u32)
+}
+
+/// So many workgroups, in rows.
+fn grid_of(workgroups: u32) -> [u32; 3] {
     [workgroups.min(WORKGROUPS_X), workgroups.div_ceil(WORKGROUPS_X), 1]
 }
 
@@ -206,7 +209,12 @@ impl PreparedPass {
                     enc.dispatch_indirect(pipeline, &sets, &chunk_run.chunk, workgroups);
                     continue;
                 }
-                if [Domain::SurfelSlots, Domain::Clusters].contains(&domain) {
+                if domain == Domain::Clusters {
+                    let groups = grid_of(chunk_run.chunk.group_count);
+                    enc.dispatch(pipeline, &sets, &chunk_run.chunk, groups);
+                    continue;
+                }
+                if domain == Domain::SurfelSlots {
                     chunk_run.instances = chunk_run.capacity;
                 }
                 let [x, y, _] = match domain {
@@ -214,9 +222,6 @@ impl PreparedPass {
                         row_over(chunk_run.chunk.count.into())
                     }
                     Domain::SurfelSlots => row_over(chunk_run.chunk.instance_stride.into()),
-                    Domain::Clusters => {
-                        row_over(u64::from(chunk_run.chunk.instance_stride).div_ceil(CLUSTER))
-                    }
                     Domain::LargeTriangles => [LARGE_WORKGROUPS.div_ceil(chunk_run.instances), 1, 1],
                     _ => grid_over_pixels(frame.targets.size),
                 };

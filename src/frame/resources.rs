@@ -1,26 +1,28 @@
 //! Frame resources: pipelines, targets and scene resources, created when scene or settings change and reused by frames.
 
 use super::description::{Description, describe};
+use super::distinct::Distinct;
+use super::list_layout::ListLayout;
+use super::list_range::ListRange;
 use super::pipelines::{Host, Pipelines};
 use super::rasterizer::width_of_blended_sums;
 use super::recording::Frame;
 use super::renderer::RenderOptions;
 use super::resource::Resource;
 use super::scene_cache::SceneCache;
-use super::scene_resources::{InstanceRun, Needs, SceneResources, batches_of};
+use super::scene_resources::{InstanceRun, Needs, SceneResources};
 use super::slicing::Slicing;
-use super::splat_list::{ListExtent, ListRange, SplatList, extent_of, padded_instances};
+use super::splat_list::{ListExtent, SplatList, padded_instances};
 use super::targets::{HostBindings, RenderTargets, check_size};
 use super::uniforms::{self, Uniforms};
 use super::variant::{SceneVariant, Variant};
 use super::variant_resources::{VariantResources, ViewSet, prepared};
 use crate::error::Result;
 use crate::geometry::Camera;
-use crate::scene::Scene;
 use crate::scene::instance::Placed;
 use crate::settings::splatting::Visibility;
 use crate::settings::{Precision, RasterizerReason, Settings};
-use crate::vk::{Access, Buffer, Device, Recorder};
+use crate::vk::{Access, Buffer, Device, Recorder, Update};
 use std::any::Any;
 use std::sync::Arc;
 
@@ -306,37 +308,25 @@ impl FrameResources {
             bytes_of_scenes[*scene].resize(start + bytes.len(), 0);
             bytes_of_scenes[*scene][start..].copy_from_slice(bytes);
         }
+        let uniform = |buffer, bytes| Update { buffer, start: 0, bytes, read: Access::UNIFORM_READ };
         let bytes = uniforms.bytes();
-        let view = (&*self.view, &*bytes);
-        let frames = self
-            .scenes()
-            .zip(&bytes_of_scenes)
-            .filter_map(|(scene, bytes)| Some((scene.views.as_ref()?, &**bytes)));
-        rec.update(&std::iter::once(view).chain(frames).collect::<Vec<_>>());
+        let views = of_scenes.iter().zip(&bytes_of_scenes);
+        let views = views.filter_map(|(scene, bytes)| Some(uniform(scene.views.as_ref()?, bytes)));
+        let groups = of_scenes.iter().flat_map(|scene| scene.group_updates());
+        rec.update(std::iter::once(uniform(&self.view, &bytes)).chain(views).chain(groups));
     }
 
     /// Creates missing resources of these scenes, and sets their surfel counts.
     fn make_scenes(&mut self, placed: &[Placed<'_>], frame: &Description) -> Result<()> {
         let instanced = !frame.uniforms.instances.is_empty();
         let variant = &frame.variant;
-        let mut list: Vec<&Scene> = Vec::new();
-        let mut first_of: Vec<usize> = Vec::new();
-        let mut counts: Vec<u64> = Vec::new();
-        self.placements.clear();
-        let mut known = std::collections::HashMap::new();
-        for (i, Placed { scene, .. }) in placed.iter().enumerate() {
-            let index = *known.entry(scene.id).or_insert(list.len());
-            if index == list.len() {
-                list.push(scene);
-                first_of.push(i);
-                counts.push(0);
-            }
-            self.placements.push([index, counts[index] as usize]);
-            counts[index] += 1;
-        }
+        let distinct = Distinct::new(placed);
         let splats = variant.pull_push.is_none() && !variant.is_tiled();
         let of_host = self.pipelines.has_host();
-        let starts = self.make_splats(&list, &counts, variant)?;
+        let ranges = self.make_splats(&distinct, frame)?;
+        let Distinct { scenes: list, instances, placements } = distinct;
+        self.placements = placements;
+        let counts: Vec<_> = instances.iter().map(|instances| instances.len() as u64).collect();
         let needs = |scene: usize| Needs {
             splats,
             moved: of_host && splats && variant.visibility == Visibility::Axis,
@@ -348,18 +338,19 @@ impl FrameResources {
         let splat_list = splat_list.as_ref();
         let fits = |resources: &SceneResources, scene: usize| {
             resources.needs().satisfies(&needs(scene))
-                && match splat_list {
-                    Some(splats) if variant.is_tiled() => {
+                && match (splat_list, ranges.get(scene)) {
+                    (Some(splats), Some((start, room))) => {
                         resources.needs() == &needs(scene)
-                            && resources.range().is_some_and(|range| range.is_range_of(splats, starts[scene]))
+                            && resources.range().is_some_and(|range| range.is_range_of(splats, *start, room))
                     }
                     _ => resources.range().is_none(),
                 }
         };
         let make = |scene: usize| {
-            let variant = &frame.scenes[first_of[scene]];
-            let range = splat_list.filter(|_| variant.frame.is_tiled());
-            let range = range.map(|splats| ListRange::new(splats, list[scene], starts[scene]));
+            let variant = &frame.scenes[instances[scene][0]];
+            let range = splat_list.zip(ranges.get(scene));
+            let range = range
+                .map(|(splats, (start, room))| ListRange::new(splats, list[scene], *start, room.clone()));
             SceneResources::new(device, list[scene], variant, needs(scene), view, range)
         };
         let updated = scenes.update(&list, fits, make, |evicted| disposal.add(Some(evicted)));
@@ -367,8 +358,10 @@ impl FrameResources {
             self.placements.clear();
         }
         updated?;
-        for ((resources, scene), instances) in scenes.current_mut().zip(list).zip(counts) {
-            resources.set_frame(scene, instances);
+        let last = list.len().saturating_sub(1);
+        let all = scenes.current_mut().zip(list).zip(counts).zip(&frame.selections).enumerate();
+        for (index, (((resources, scene), instances), selection)) in all {
+            resources.set_frame(scene, instances, selection, index == last);
             if variant.count {
                 resources.make_counts(device)?;
             }
@@ -376,31 +369,26 @@ impl FrameResources {
         Ok(())
     }
 
-    /// Creates the splat list of these distinct scenes with so many instances each; returns the start of each scene's range.
+    /// Creates the splat list of these scenes; returns the start and the room of each scene's range, on the tile path.
     fn make_splats(
         &mut self,
-        scenes: &[&Scene],
-        instances: &[u64],
-        variant: &Variant,
-    ) -> Result<Vec<ListExtent>> {
-        let mut extent = ListExtent::default();
-        let mut starts = Vec::new();
+        scenes: &Distinct<'_>,
+        frame: &Description,
+    ) -> Result<Vec<(ListExtent, Vec<u64>)>> {
+        let variant = &frame.variant;
         if !variant.is_tiled() {
-            return Ok(starts);
+            return Ok(Vec::new());
         }
-        for (scene, instances) in scenes.iter().zip(instances) {
-            starts.push(extent);
-            extent =
-                extent.with(extent_of(scene, &batches_of(&self.device, scene, padded_instances(*instances))));
-        }
-        self.splat_count = extent.splats;
+        let ListLayout { ranges, extent, splats } =
+            ListLayout::new(&self.device, scenes, &frame.selections, variant, &self.scenes);
+        self.splat_count = splats;
         if !self.splats.as_ref().is_some_and(|splats| splats.fits(variant, extent)) {
             self.created += 1;
             let (old, incomplete) = (self.splats.as_deref(), self.slicing.buffer());
             let splats = SplatList::new(variant, extent, self.created, old, incomplete)?;
             self.disposal.add(self.splats.replace(Arc::new(splats)));
         }
-        Ok(starts)
+        Ok(ranges)
     }
 
     fn make_current(&mut self, scenes: &[Placed<'_>], variant: Variant, size: [u32; 2]) -> Result<()> {

@@ -36,6 +36,11 @@ impl SceneCache {
         self.list[..self.current_count].iter_mut().map(|entry| &mut entry.resources)
     }
 
+    /// The resources of a scene in the last frame that had it.
+    pub fn find(&self, scene: &Scene) -> Option<&SceneResources> {
+        self.list.iter().find(|entry| entry.scene == scene.id).map(|entry| &entry.resources)
+    }
+
     /// Updates the cache for a frame of distinct scenes: reuses the entry of a scene that `fits` it (an index into `scenes`), or creates
     /// one by `make`. Passes evicted resources to `evict`, also on an error, after which no scene is present.
     pub fn update(

@@ -2,19 +2,21 @@
 
 mod instance_run;
 
+use super::list_range::ListRange;
 use super::pass::Scope;
 use super::resource::Resource;
+use super::selection::Selection;
 use super::splat_buffers::{ALIGNMENT, Batches, LIST_HEADER, SPLAT, SplatBuffers};
-use super::splat_list::{ListRange, slots};
+use super::splat_list::slots;
 use super::surfel_order::SurfelOrder;
 use super::uniforms::{self, VIEW};
 use super::variant::SceneVariant;
 use super::visible_clusters::VisibleClusters;
 use crate::error::Result;
 use crate::scene::{CLUSTER, Elements, Scene};
-use crate::vk::shaders::layout::{Counts, Splat};
+use crate::vk::shaders::layout::{Counts, Group, Splat};
 use crate::vk::shaders::{self, resource};
-use crate::vk::{Binding, Buffer, Commands, DescriptorSet, Device, Encoder, Recorder};
+use crate::vk::{Binding, Buffer, Commands, DescriptorSet, Device, Encoder, Recorder, Update};
 use bytemuck::Zeroable;
 pub use instance_run::{ChunkRun, InstanceRun};
 use std::ops::Range;
@@ -37,8 +39,12 @@ pub struct SceneResources {
     large_triangles: Option<Buffer>,
     /// Order of its surfels, chunk by chunk, if they are in arbitrary order.
     order: Option<SurfelOrder>,
-    /// Lists of visible clusters, if the frame culls clusters.
+    /// Groups and visible clusters, if the frame culls clusters.
     clusters: Option<VisibleClusters>,
+    /// Groups of the frame, chunk by chunk in each batch, if it culls clusters.
+    groups: Vec<Vec<Group>>,
+    /// Surfels of culled groups.
+    culled: Counts,
     /// Views of the instances, if scenes are instanced.
     pub views: Option<Buffer>,
     chunks: Vec<Range<u64>>,
@@ -126,6 +132,8 @@ impl SceneResources {
             large_triangles: triangles.map(list).transpose()?,
             order: variant.unordered.then(|| SurfelOrder::new(device, scene)).transpose()?,
             clusters: needs.clusters.then(|| VisibleClusters::new(device, scene, batches)).transpose()?,
+            groups: Vec::new(),
+            culled: Counts::zeroed(),
             views: needs.instanced.then(views).transpose()?,
             chunks: scene.chunks().to_vec(),
             clips: clips.iter().map(|clips| clips.count as u32).collect(),
@@ -149,9 +157,14 @@ impl SceneResources {
         self.range.as_ref()
     }
 
-    /// Sets the surfel and instance counts of the next frames, and the curve along which the scene's surfels are sorted.
-    pub fn set_frame(&mut self, scene: &Scene, instances: u64) {
+    /// Sets the surfel and instance counts of the next frame, its groups, and the curve along which the scene's surfels are sorted. `at_end`:
+    /// its splats are the last ones of the frame.
+    pub fn set_frame(&mut self, scene: &Scene, instances: u64, selection: &Selection, at_end: bool) {
         (self.count, self.instances) = (scene.count(), instances);
+        if self.clusters.is_some() {
+            let room = self.range.as_ref().map_or(&[][..], ListRange::room);
+            (self.groups, self.culled) = (selection.lists(room, at_end), selection.culled());
+        }
         if let Some(order) = &mut self.order {
             order.set_curve(scene);
         }
@@ -194,19 +207,16 @@ impl SceneResources {
             };
             [frame, self.views.as_ref().map_or(view, of_batch)]
         };
-        let visible = |batch: u64, index: usize| {
-            let clusters = self.clusters.as_ref()?;
-            Some((&resource::VISIBLE_CLUSTERS, clusters.binding(batch, index)))
-        };
         let of_surfels = variant.resources(Scope::Surfels);
         let surfels = |buffers: Option<&SplatBuffers>, batch: u64, index: usize| {
             let mut bindings = scene.bindings(index);
             bindings.extend(uniform_bindings(batch));
             bindings.extend(self.order.as_ref().map(|order| (&resource::ORDER, order.binding(index))));
-            bindings.extend(visible(batch, index));
+            bindings.extend(self.clusters.iter().flat_map(|clusters| clusters.bindings(batch, index)));
             bindings.extend(buffers.into_iter().flat_map(|splats| splats.bindings(scene, batch, index)));
             let range = self.range.as_ref().filter(|_| buffers.is_none());
-            bindings.extend(range.into_iter().flat_map(|range| range.bindings(scene, batches, batch, index)));
+            bindings
+                .extend(range.and_then(|range| range.bindings(batches, batch, index)).into_iter().flatten());
             bound_set(device, &of_surfels, bindings)
         };
         let chunks =
@@ -217,7 +227,8 @@ impl SceneResources {
         let of_clusters = variant.resources(Scope::Clusters);
         let clusters = |(batch, index)| {
             let bounds = scene.cluster_bindings();
-            let bindings = uniform_bindings(batch).into_iter().chain(bounds).chain(visible(batch, index));
+            let lists = self.clusters.iter().flat_map(|clusters| clusters.bindings(batch, index));
+            let bindings = uniform_bindings(batch).into_iter().chain(bounds).chain(lists);
             bound_set(device, &of_clusters, bindings.collect())
         };
         let elements = |kind: usize| {
@@ -308,16 +319,30 @@ impl SceneResources {
 
     /// Culled surfels of the last counted frame, by reason. The frame must have completed.
     pub fn counts(&self) -> Counts {
-        self.counts.as_ref().map_or(Counts::zeroed(), |counts| counts_in(counts.bytes()))
+        self.counts.as_ref().map_or(Counts::zeroed(), |counts| sum(counts_in(counts.bytes()), self.culled))
+    }
+
+    /// Surfels of culled groups of the frame, by reason.
+    pub fn culled(&self) -> Counts {
+        self.culled
+    }
+
+    /// Groups of a chunk in a batch.
+    fn groups_of(&self, batch: u64, chunk: usize) -> &[Group] {
+        self.groups.get(batch as usize * self.chunks.len() + chunk).map_or(&[], |groups| groups)
+    }
+
+    /// Updates of the groups.
+    pub fn group_updates(&self) -> impl Iterator<Item = Update<'_>> + Clone {
+        self.clusters.iter().flat_map(|clusters| clusters.updates(&self.groups))
     }
 
     /// Memory of splats, counters, order and lists of clusters, bytes.
     pub fn bytes(&self) -> u64 {
         let splats = [&self.splats, &self.moved].into_iter().flatten().map(SplatBuffers::bytes);
         let order = self.order.as_ref().map(SurfelOrder::buffer);
-        let clusters = self.clusters.as_ref().map(VisibleClusters::buffer);
-        let others = [self.counts.as_ref(), order, clusters].into_iter().flatten().map(Buffer::size);
-        splats.chain(others).sum()
+        let others = [self.counts.as_ref(), order].into_iter().flatten().map(Buffer::size);
+        splats.chain(others).chain(self.clusters.as_ref().map(VisibleClusters::bytes)).sum()
     }
 
     /// Reads back the splats of the last frame, one per surfel, instance by instance.
@@ -330,32 +355,54 @@ impl SceneResources {
         };
         let target = Buffer::readback(device, "read splats", splats.size())?;
         Commands::new(device, false)?.run(|rec| copy_to_host(rec, splats, &target))?;
-        let culled = match (&self.range, &self.clusters) {
-            (Some(range), Some(_)) => range.list.read_culled(device)?,
-            _ => Vec::new(),
-        };
+        let list: &[Splat] = bytemuck::cast_slice(target.bytes());
         let order = self.order.as_ref().filter(|_| self.range.is_some());
         let order = order.map(|order| order.read(device).map(|words| (order, words))).transpose()?;
+        let culled = match (&self.range, &self.clusters) {
+            (Some(range), Some(_)) => Some((range, range.list.read_culled(device)?)),
+            _ => None,
+        };
         let of_instance = |instance: u64| {
-            let start = match (&self.splats, &self.range) {
-                (Some(buffers), _) => buffers.splats_start(instance, capacity),
-                (None, Some(range)) => SPLAT * range.first_splat(capacity, &self.batches, instance),
-                (None, None) => 0,
-            } as usize;
-            let mut in_slots: Vec<Splat> =
-                bytemuck::pod_collect_to_vec(&target.bytes()[start..start + size as usize]);
-            let of_clusters = culled.iter().skip(start / (SPLAT * CLUSTER) as usize);
-            for (cluster, _) in
-                in_slots.chunks_mut(CLUSTER as usize).zip(of_clusters).filter(|(_, culled)| **culled)
-            {
-                cluster.fill(Splat::zeroed());
-            }
+            let in_slots = match (&self.splats, &self.range, &culled) {
+                (None, Some(_), Some((range, culled))) => self.of_clusters(instance, list, range, culled),
+                (buffers, range, _) => {
+                    let [batch, index] = self.batches.of(instance);
+                    let of_range = |range: &ListRange| range.first_splat(batch, 0) + index * slots(capacity);
+                    let start = match (buffers, range) {
+                        (Some(buffers), _) => buffers.splats_start(instance, capacity) / SPLAT,
+                        (None, range) => range.as_ref().map_or(0, of_range),
+                    } as usize;
+                    list[start..start + self.count as usize].to_vec()
+                }
+            };
             match &order {
                 Some((order, words)) => order.by_surfel(&in_slots, words),
                 None => in_slots,
             }
         };
         Ok((0..self.instances).map(of_instance).collect())
+    }
+
+    /// The splats of an instance, surfel by surfel or in the order of surfels, from a list of which these clusters are culled.
+    fn of_clusters(&self, instance: u64, list: &[Splat], range: &ListRange, culled: &[bool]) -> Vec<Splat> {
+        let mut all = vec![Splat::zeroed(); self.count as usize];
+        let [batch, index] = self.batches.of(instance);
+        for (chunk, surfels) in self.chunks.iter().enumerate() {
+            let first = range.first_splat(batch, chunk);
+            let groups =
+                self.groups_of(batch, chunk).iter().filter(|group| u64::from(group.instance) == index);
+            let clusters = groups.flat_map(|group| {
+                (0..group.count)
+                    .map(|k| [group.first + k, group.slot + k].map(|index| CLUSTER * u64::from(index)))
+            });
+            for [surfel, slot] in clusters.map(|[surfel, slot]| [surfels.start + surfel, first + slot]) {
+                let own = surfel as usize..(surfel + CLUSTER).min(self.count) as usize;
+                if !culled[(slot / CLUSTER) as usize] {
+                    all[own.clone()].copy_from_slice(&list[slot as usize..][..own.len()]);
+                }
+            }
+        }
+        all
     }
 
     /// Bytes of the counters; 0 if nothing is counted.

@@ -1,17 +1,14 @@
 //! Splat list: the splats of all scenes of a frame on the tile path, and the hierarchy of boxes above them.
 
 use super::resource::Resource;
-use super::scene_resources::{batches_of, copy_to_host};
+use super::scene_resources::copy_to_host;
 use super::splat_buffers::{ALIGNMENT, Batches, SPLAT};
 use super::variant::{TileWorkgroup, Variant};
 use crate::error::Result;
-use crate::scene::instance::Placed;
 use crate::scene::{CLUSTER, Scene};
 use crate::vk::shaders::layout::{Hierarchy, Level, ScreenClip};
 use crate::vk::shaders::{self, resource};
 use crate::vk::{Binding, Buffer, Commands, Device, TexelView};
-use std::collections::HashMap;
-use std::ops::Range;
 use std::sync::Arc;
 
 /// Children of a node of the hierarchy: FAN_OUT of `lib/box.glsl`.
@@ -311,30 +308,15 @@ pub fn slots(surfels: u64) -> u64 {
 }
 
 /// Screen clip capacity of each chunk for one instance.
-fn clip_capacities(scene: &Scene) -> Vec<u64> {
+pub fn clip_capacities(scene: &Scene) -> Vec<u64> {
     let clips = scene.clip_chunks().unwrap_or_default();
     clips.iter().map(|clips| clips.count.next_multiple_of(CLIP_RANGE)).collect()
 }
 
-/// Extent of so many batches of a scene.
-pub fn extent_of(scene: &Scene, batches: &Batches) -> ListExtent {
+/// Extent of a scene's range with this room, slots of each chunk and batch.
+pub fn extent_of(scene: &Scene, batches: &Batches, room: &[u64]) -> ListExtent {
     let clips: u64 = clip_capacities(scene).iter().sum();
-    let of_batch = |batch| {
-        let instances = batches.len(batch);
-        ListExtent { splats: instances * slots(scene.capacity()), clips: instances * clips }
-    };
-    (0..batches.count()).map(of_batch).fold(ListExtent::default(), ListExtent::with)
-}
-
-/// Extent of a frame of these scenes.
-pub fn extent_of_frame(device: &Device, scenes: &[Placed<'_>]) -> ListExtent {
-    let mut instances: HashMap<u64, (&Scene, u64)> = HashMap::new();
-    for Placed { scene, .. } in scenes {
-        instances.entry(scene.id).or_insert((scene, 0)).1 += 1;
-    }
-    instances.values().fold(ListExtent::default(), |all, (scene, count)| {
-        all.with(extent_of(scene, &batches_of(device, scene, padded_instances(*count))))
-    })
+    ListExtent { splats: room.iter().sum(), clips: batches.instances * clips }
 }
 
 /// Workgroups for a list on a device: subgroups that fetch texels, or shared memory with storage buffers; `None` if the list is too large.
@@ -356,67 +338,6 @@ pub fn workgroup_of(device: &Device, extent: ListExtent) -> Option<TileWorkgroup
 /// powers of two.
 pub fn padded_instances(instances: u64) -> u64 {
     instances.next_multiple_of((instances.next_power_of_two() / 8).max(1))
-}
-
-/// A scene's range of a list.
-#[derive(Clone)]
-pub struct ListRange {
-    /// The list.
-    pub list: Arc<SplatList>,
-    /// Start of the range.
-    pub first: ListExtent,
-    /// Screen clip capacity per chunk and instance.
-    clips: Vec<u64>,
-}
-
-impl ListRange {
-    /// The range of a scene that starts at `first`.
-    pub fn new(list: &Arc<SplatList>, scene: &Scene, first: ListExtent) -> Self {
-        Self { list: list.clone(), first, clips: clip_capacities(scene) }
-    }
-
-    /// Whether it is the range of `list` that starts at `first`.
-    pub fn is_range_of(&self, list: &Arc<SplatList>, first: ListExtent) -> bool {
-        Arc::ptr_eq(&self.list, list) && self.first == first
-    }
-
-    /// First splat of an instance of a scene with this capacity.
-    pub fn first_splat(&self, capacity: u64, batches: &Batches, instance: u64) -> u64 {
-        let [batch, index] = batches.of(instance);
-        self.first.splats + slots(capacity) * (batches.range(batch).start + index)
-    }
-
-    /// First screen clip of a chunk in a batch.
-    pub fn first_clip(&self, batches: &Batches, batch: u64, chunk: usize) -> u64 {
-        let [all, before]: [u64; 2] = [self.clips.iter().sum(), self.clips.iter().take(chunk).sum()];
-        self.first.clips + all * batches.range(batch).start + before * batches.len(batch)
-    }
-
-    /// Node of the first cluster of a chunk in a batch, see [`SplatList::cluster_of`].
-    pub fn first_node(&self, batches: &Batches, batch: u64, chunks: &[Range<u64>], index: usize) -> u64 {
-        let capacity = chunks.last().map_or(0, |chunk| chunk.end);
-        let first = self.first_splat(capacity, batches, batches.range(batch).start);
-        self.list.cluster_of(first + chunks[index].start)
-    }
-
-    /// Bindings of the footprint pass for a chunk in a batch.
-    pub fn bindings(
-        &self,
-        scene: &Scene,
-        batches: &Batches,
-        batch: u64,
-        index: usize,
-    ) -> Vec<(&'static shaders::Resource, Binding<'_>)> {
-        let (instances, chunk) = (batches.len(batch), &scene.chunks()[index]);
-        let first = ListExtent {
-            splats: self.first_splat(scene.capacity(), batches, batches.range(batch).start) + chunk.start,
-            clips: self.first_clip(batches, batch, index),
-        };
-        let clips = self.clips.get(index).copied().unwrap_or_default();
-        let count =
-            ListExtent { splats: instances * slots(chunk.end - chunk.start), clips: instances * clips };
-        self.list.range(first, count)
-    }
 }
 
 #[cfg(test)]

@@ -430,7 +430,11 @@ impl SceneVariant {
                 (&resource::SPLAT_BOXES, frame.is_tiled()),
                 (&resource::SPLAT_ATTRIBUTES, frame.is_tiled()),
             ],
-            Scope::Clusters => &[(&resource::CLUSTERS, self.bounded), (&resource::VISIBLE_CLUSTERS, true)],
+            Scope::Clusters => &[
+                (&resource::CLUSTERS, self.bounded),
+                (&resource::GROUPS, true),
+                (&resource::VISIBLE_CLUSTERS, true),
+            ],
             Scope::Lines | Scope::Triangles => &[
                 (&resource::VERTICES, true),
                 (&resource::LINE_DIRECTIONS, self.primitives.lines),

@@ -1,6 +1,7 @@
 //! Bounds of a scene's clusters of surfels, by which frames cull.
 
 use super::Changes;
+use super::groups::{self, GroupBounds};
 use crate::error::Result;
 use crate::geometry::Surfels;
 use crate::vk::shaders::layout::Cluster;
@@ -20,16 +21,24 @@ pub(super) fn bytes(surfels: u64) -> u64 {
 /// Bounds of all clusters.
 pub(crate) struct Clusters {
     pub buffer: Buffer,
-    /// The bounds in the buffer, which updates extend.
-    bounds: Mutex<Vec<ClusterBounds>>,
+    chunks: Vec<Range<u64>>,
+    known: Mutex<Known>,
+}
+
+/// Bounds, which updates extend.
+struct Known {
+    /// The bounds in the buffer.
+    clusters: Vec<ClusterBounds>,
+    /// Those of groups of them, chunk by chunk.
+    groups: Vec<Vec<GroupBounds>>,
 }
 
 /// Bounds of a cluster's surfels, without those that are certainly invalid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct ClusterBounds {
-    low: Vec3,
-    high: Vec3,
-    radius: f32,
+pub(super) struct ClusterBounds {
+    pub low: Vec3,
+    pub high: Vec3,
+    pub radius: f32,
     cone: Cone,
     /// Some may be two-sided.
     two_sided: bool,
@@ -52,8 +61,8 @@ const ROUNDING: f32 = 1e-5;
 const NO_CONE: f32 = 2.0;
 
 impl Clusters {
-    /// Bounds of the clusters of `surfels`.
-    pub fn new(uploads: &Uploads<'_>, surfels: &Surfels) -> Result<Self> {
+    /// Bounds of the clusters of `surfels`, which have these chunks.
+    pub fn new(uploads: &Uploads<'_>, surfels: &Surfels, chunks: &[Range<u64>]) -> Result<Self> {
         let count = surfels.len() as u64;
         let all = Changes {
             positions: Some(&surfels.positions),
@@ -62,12 +71,18 @@ impl Clusters {
             two_sided: surfels.two_sided.as_deref(),
             ..Changes::default()
         };
-        let bounds: Vec<_> = (0..count.div_ceil(CLUSTER))
+        let clusters: Vec<_> = (0..count.div_ceil(CLUSTER))
             .map(|index| ClusterBounds::NONE.with(0..count, &all, range(index, count)))
             .collect();
-        let words: Vec<_> = bounds.iter().map(ClusterBounds::words).collect();
+        let words: Vec<_> = clusters.iter().map(ClusterBounds::words).collect();
         let buffer = uploads.buffer("clusters", bytemuck::cast_slice(&words))?;
-        Ok(Self { buffer, bounds: Mutex::new(bounds) })
+        let known = Known { groups: groups::bounds(chunks, &clusters), clusters };
+        Ok(Self { buffer, chunks: chunks.to_vec(), known: Mutex::new(known) })
+    }
+
+    /// Calls `body` with the bounds of the groups of clusters, chunk by chunk.
+    pub fn with_groups<R>(&self, body: impl FnOnce(&[Vec<GroupBounds>]) -> R) -> R {
+        body(&self.known.lock().unwrap_or_else(PoisonError::into_inner).groups)
     }
 
     /// Includes changes of the surfels `changed` of `count`, and uploads the bounds of their clusters.
@@ -85,13 +100,15 @@ impl Clusters {
         }
         let first = changed.start / CLUSTER;
         let indices = first..changed.end.div_ceil(CLUSTER);
-        let mut bounds = self.bounds.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let Known { clusters, groups } = &mut *known;
         for index in indices.clone() {
-            let known = &mut bounds[index as usize];
-            *known = known.with(changed.clone(), changes, range(index, count));
+            let bounds = &mut clusters[index as usize];
+            *bounds = bounds.with(changed.clone(), changes, range(index, count));
         }
+        groups::update(groups, &self.chunks, clusters, &changed);
         let words: Vec<_> =
-            bounds[first as usize..indices.end as usize].iter().map(ClusterBounds::words).collect();
+            clusters[first as usize..indices.end as usize].iter().map(ClusterBounds::words).collect();
         uploads.write(&self.buffer, first * size_of::<Cluster>() as u64, bytemuck::cast_slice(&words))
     }
 }

@@ -4,6 +4,7 @@ mod chunks;
 mod clips;
 mod clusters;
 mod external;
+mod groups;
 pub(crate) mod instance;
 mod live;
 mod materials;
@@ -31,6 +32,7 @@ pub(crate) use clusters::CLUSTER;
 use clusters::Clusters;
 pub(crate) use external::ExternalBuffers;
 use glam::{DVec3, Vec3};
+pub(crate) use groups::{GROUP, GroupBounds, groups};
 pub use instance::{Instance, Instances};
 pub(crate) use materials::MaterialStream;
 pub use order::Order;
@@ -187,7 +189,7 @@ impl Scene {
                 .map(|clips| ClipStream::new(uploads, clips, &chunks))
                 .transpose()?,
             levels: parts.levels.filter(|table| !table.starts().is_empty()).cloned(),
-            clusters: bounded.then(|| Clusters::new(uploads, surfels)).transpose()?,
+            clusters: bounded.then(|| Clusters::new(uploads, surfels, &chunks)).transpose()?,
             primitives: PrimitiveStreams::new(device, uploads, &parts)?,
             texture: image.map(|image| TextureStream::new(device, uploads, image)).transpose()?,
             materials: MaterialStream::new(device, uploads, &parts)?,
@@ -340,6 +342,14 @@ impl Scene {
         list.extend(self.clips.as_ref().map(|clips| (&resource::CLIPS, clips.binding(number))));
         list.extend(self.weights.as_ref().map(|weights| (&resource::WEIGHTS, weights.binding(number))));
         list
+    }
+
+    /// Calls `body` with the bounds of the groups of its clusters, chunk by chunk, if they are known.
+    pub(crate) fn with_groups<R>(&self, body: impl FnOnce(Option<&[Vec<GroupBounds>]>) -> R) -> R {
+        match &self.clusters {
+            Some(clusters) => clusters.with_groups(|groups| body(Some(groups))),
+            None => body(None),
+        }
     }
 
     /// Bounds of its clusters of surfels.

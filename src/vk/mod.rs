@@ -75,7 +75,7 @@ pub(crate) use pipeline::{ComputePipeline, DrawPipeline};
 pub(crate) use presenter::Stake;
 #[cfg(feature = "window")]
 pub use presenter::{FRAMES_IN_FLIGHT, Presented, Presenter};
-pub(crate) use recorder::Recorder;
+pub(crate) use recorder::{Recorder, Update};
 pub(crate) use render_pass::{Attachment, Framebuffer, RenderPass};
 pub use requirements::{ABILITIES, API_VERSION, Abilities, Ability, Features, QUEUE};
 pub(crate) use set_layout::SetLayout;

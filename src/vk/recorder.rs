@@ -6,6 +6,17 @@ use super::tracker::{Barrier, Tracker};
 use super::{Buffer, Device, Encoder};
 use ash::vk;
 
+/// Bytes to write into a buffer, a multiple of 4.
+#[derive(Clone, Copy)]
+pub struct Update<'a> {
+    pub buffer: &'a Buffer,
+    /// Offset in the buffer, bytes; a multiple of 4.
+    pub start: u64,
+    pub bytes: &'a [u8],
+    /// How later passes read them.
+    pub read: Access,
+}
+
 /// Records the passes of one frame. Its resources must outlive the frame.
 pub struct Recorder<'a> {
     pub(super) device: &'a Device,
@@ -77,20 +88,21 @@ impl<'a> Recorder<'a> {
         HostPass::new(label, queries)
     }
 
-    /// Writes each buffer's bytes, a multiple of 4, which later passes read as uniforms.
-    pub fn update(&mut self, updates: &[(&Buffer, &[u8])]) {
+    /// Writes bytes into buffers, for later passes to read.
+    pub fn update<'b>(&mut self, updates: impl Iterator<Item = Update<'b>> + Clone) {
         /// Limit of `vkCmdUpdateBuffer`, bytes.
         const MOST: usize = 65_536;
-        let all = |access| updates.iter().map(|(buffer, _)| buffer.with(access)).collect::<Vec<_>>();
-        self.barrier(&all(Access::COPY_WRITE));
-        for (buffer, bytes) in updates {
-            assert!(bytes.len() as u64 <= buffer.size(), "an update past the end of a buffer");
-            for (chunk, at) in bytes.chunks(MOST).zip((0..).step_by(MOST)) {
+        self.barrier(
+            &updates.clone().map(|update| update.buffer.with(Access::COPY_WRITE)).collect::<Vec<_>>(),
+        );
+        for Update { buffer, start, bytes, .. } in updates.clone() {
+            assert!(start + bytes.len() as u64 <= buffer.size(), "an update past the end of a buffer");
+            for (chunk, at) in bytes.chunks(MOST).zip((start..).step_by(MOST)) {
                 // SAFETY: the command buffer is being recorded outside a render pass; the buffer is alive, can be copied to and is large enough.
                 unsafe { self.device.raw.cmd_update_buffer(self.cmd, buffer.raw, at, chunk) };
             }
         }
-        self.barrier(&all(Access::UNIFORM_READ));
+        self.barrier(&updates.map(|update| update.buffer.with(update.read)).collect::<Vec<_>>());
     }
 
     /// Sets every word of `buffer` to `word`, for the CPU to read. This is not a timed pass.

@@ -123,14 +123,14 @@ fn instances_of_a_scene_share_allocations() {
             |i: usize| exact(0.5, [0.0; 3], [(i % 40) as f64 / 8.0 - 1.0, (i / 40) as f64 / 8.0, 0.0]);
         (0..count).map(|i| Instance::new(&scene, place(i))).collect()
     };
-    for (rasterizer, tile_buffers) in [(Rasterizer::Draw, 0), (Rasterizer::Compute, 3)] {
+    for (rasterizer, tile_buffers) in [(Rasterizer::Draw, 0), (Rasterizer::Compute, 4)] {
         let mut renderer = Renderer::new(&device, options(rasterizer)).unwrap();
         let settings = settings("perspective-ewa");
         renderer.render(&instances(1)[..], &perspective(), &settings).unwrap();
         let before = device.usage();
         renderer.render(&instances(2000)[..], &perspective(), &settings).unwrap();
         let made = device.usage();
-        // Splats, views, and on the tile path boxes, attributes and visible clusters.
+        // Splats, views, and on the tile path boxes, attributes, groups of clusters and visible clusters.
         assert_eq!(made.allocations - before.allocations, 2 + tile_buffers, "{rasterizer:?}");
         let splats = 2000 * 50 * size_of::<surfel::frame::Splat>() as u64;
         assert!(

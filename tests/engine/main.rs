@@ -21,6 +21,7 @@ mod filter;
 mod footprint;
 mod frame_plans;
 mod frames;
+mod groups;
 mod hard;
 mod hostile;
 mod instances;

@@ -4,7 +4,7 @@ use crate::frame::pass::{Commands, Domain, Pass, Program, Programs};
 use crate::frame::resource::Resource::{Boxes, Counts, VisibleClusters};
 use crate::vk::shaders::{CULL_COMPUTE, CULL_TILES_COMPUTE, constant};
 
-/// One invocation per cluster; scenes without bounds have all of theirs listed.
+/// One workgroup per group of clusters that the CPU has not culled; scenes without bounds have all of theirs listed.
 pub static CULL: Pass = Pass {
     name: "cull",
     reads: &[],

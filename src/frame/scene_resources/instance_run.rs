@@ -88,14 +88,11 @@ impl<'a> InstanceRun<'a> {
                     as u32,
                 attribute_rows: scene.range.as_ref().map_or(0, |range| range.list.rows()) as u32,
                 instance_count: present,
-                first_node: scene
-                    .range
-                    .as_ref()
-                    .map_or(0, |range| range.first_node(&scene.batches, batch, &scene.chunks, index))
-                    as u32,
+                first_node: scene.range.as_ref().map_or(0, |range| range.first_node(batch, index)) as u32,
+                group_count: scene.groups_of(batch, index).len() as u32,
             };
             let visible = scene.clusters.as_ref();
-            let visible = visible.map(|clusters| (clusters.buffer(), clusters.start(batch, index)));
+            let visible = visible.map(|clusters| clusters.workgroups(batch, index));
             let capacity = scene.batches.len(batch) as u32;
             ChunkRun { set, counts: scene.count_sets.get(index), chunk, instances, capacity, visible }
         })
@@ -122,6 +119,7 @@ impl<'a> InstanceRun<'a> {
             attribute_rows: 0,
             instance_count: 0,
             first_node: 0,
+            group_count: 0,
         };
         let instances = self.count as u32;
         Some(ChunkRun { set, counts: None, chunk, instances, capacity: instances, visible: None })
