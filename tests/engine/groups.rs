@@ -5,6 +5,7 @@ use crate::support::settings::splats_alone;
 use glam::{DMat4, DVec3, Vec3};
 use std::sync::Arc;
 use surfel::geometry::{Camera, Levels, Surfels};
+use surfel::scene::Changes;
 use surfel::settings::Settings;
 use surfel::settings::methods::pull_push;
 use surfel::verify::scenes;
@@ -113,6 +114,28 @@ fn instances_that_are_gone_leave_nothing() {
             let (picture, _) = renderer.render_picture(&list[..], &camera, &splats_alone()).unwrap();
             assert!(picture == fresh(&device, &list, &camera, &splats_alone()), "{count} instances");
         }
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn surfels_that_move_into_the_picture_are_drawn() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let surfels = bumpy(20_000);
+    let aside = |p: &Vec3| *p + Vec3::new(40.0, 0.0, 0.0);
+    let mut moved = Surfels { positions: surfels.positions.iter().map(aside).collect(), ..surfels.clone() };
+    let scene = Scene::upload(&device, &moved).unwrap();
+    let camera = looking(DVec3::new(2.0, 1.6, 3.2), DVec3::ZERO);
+    let mut renderer = Renderer::new(&device, options()).unwrap();
+    // Some stay aside, so that both scenes have the same bounds.
+    for range in [5_000..5_000, 5_000..14_000, 0..5_000, 14_000..19_000] {
+        moved.positions[range.clone()].copy_from_slice(&surfels.positions[range.clone()]);
+        let changes = Changes { positions: Some(&surfels.positions[range.clone()]), ..Changes::default() };
+        scene.update(range.start as u64, &changes).unwrap();
+        let (picture, _) = renderer.render_picture(&scene, &camera, &splats_alone()).unwrap();
+        let of_new = Scene::upload(&device, &moved).unwrap();
+        let (expected, _) = renderer.render_picture(&of_new, &camera, &splats_alone()).unwrap();
+        assert!(picture == expected, "{range:?}");
     }
     assert_silent(&device);
 }
