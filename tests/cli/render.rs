@@ -241,3 +241,15 @@ fn a_turntable_begins_with_the_ordinary_picture_and_turns_around() {
     let run = program.run(&format!("{common} --turntable 4 -o turn.png"));
     assert!(run.error(2).contains("frames/%04d.png"), "{}", run.err);
 }
+
+#[test]
+fn a_strength_of_eye_dome_lighting_implies_it() {
+    let Some(program) = Program::with_device("a_strength_of_eye_dome_lighting_implies_it") else { return };
+    let picture = |options: &str| {
+        program.run(&format!("render {SPHERE} --size 48x32 -o a.png {options}")).text();
+        program.png("a.png")
+    };
+    let [implied, named, lit, chosen] =
+        ["--edl 2", "--shading edl --edl 2", "", "--shading lit --edl 2"].map(picture);
+    assert!(implied == named && implied != lit && chosen == lit);
+}

@@ -23,6 +23,7 @@ pub use truth::Truth;
 pub use view::View;
 
 use super::values::{Background, Layer, background, choice, kernel, method, pixel_filter, size, vector};
+use clap::builder::ArgPredicate;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use glam::DVec3;
@@ -229,9 +230,9 @@ pub struct Camera {
 #[derive(Args, Debug)]
 pub struct RenderSettings {
     /// What the picture shows
-    #[arg(long, value_parser = choice::<Shading>(), default_value = Shading::Lit.name())]
+    #[arg(long, value_parser = choice::<Shading>(), default_value = Shading::Lit.name(), default_value_if("edl", ArgPredicate::IsPresent, Shading::Edl.name()))]
     pub shading: Shading,
-    /// Strength of --shading edl: how much pixels behind their neighbours are darkened
+    /// Strength of --shading edl, which it implies: how much pixels behind their neighbours are darkened
     #[arg(long, value_name = "STRENGTH", default_value_t = Settings::DEFAULT_EDL, allow_hyphen_values = true)]
     pub edl: f32,
     /// Meaning of α [default: the method's]
