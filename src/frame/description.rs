@@ -14,7 +14,7 @@ use crate::error::{Error, Result};
 use crate::geometry::Camera;
 use crate::scene::Scene;
 use crate::scene::instance::Placed;
-use crate::settings::{RasterizerReason, Settings};
+use crate::settings::{Rasterizer, RasterizerChoice, RasterizerReason, Settings};
 use crate::vk::Device;
 
 /// Description of a frame.
@@ -53,7 +53,12 @@ pub fn describe(
     let uniforms = Uniforms::new(camera, settings, options.size, scenes)?;
     let perspective = camera.projection()?.perspective;
     let distinct = Distinct::new(scenes);
-    let (selections, extent) = select(device, &distinct, &uniforms, perspective);
+    let (selections, extent) = match options.rasterizer {
+        RasterizerChoice::Require(Rasterizer::Draw) => {
+            (distinct.scenes.iter().map(|scene| Selection::none(scene)).collect(), ListExtent::default())
+        }
+        _ => select(device, &distinct, &uniforms, perspective),
+    };
     let workgroup = workgroup_of(device, extent);
     let splats_per_tile = total_splats_per_tile(scenes, camera, options.size, lod);
     // With a bound on the work of a tile there are no slices.

@@ -16,7 +16,7 @@ pub enum Reason {
 }
 
 /// Upper bound of `largest_stretch` of `lib/footprint_kind.glsl`, of all footprints.
-const MOST_STRETCH: f64 = 2.0 * std::f64::consts::SQRT_2;
+const LARGEST_STRETCH: f64 = 2.0 * std::f64::consts::SQRT_2;
 /// Margin of sums of three products, relative to them: shaders compute in float32.
 const ROUNDING: f64 = 1e-6;
 /// Margin of squared distances, relative to them: LEVEL_ROUNDING of `cull.glsl`.
@@ -54,7 +54,7 @@ impl<'a> GroupCulling<'a> {
             rows: [0, 1, 2].map(|row| exact(view.rows_hi[row], view.rows_lo[row])),
             eye: exact(view.eye_hi, view.eye_lo).xyz(),
             viewport: frame.viewport.map(f64::from),
-            margin: MOST_STRETCH * f64::from(frame.cutoff) * lowpass.sqrt() + 2.0,
+            margin: LARGEST_STRETCH * f64::from(frame.cutoff) * lowpass.sqrt() + 2.0,
             epsilon: frame.epsilon.into(),
             perspective,
             levels,
@@ -77,7 +77,7 @@ impl<'a> GroupCulling<'a> {
         if self.perspective && bounds.of(depth, 0.0)[1] + moved * depth.length() < 0.0 {
             return Some(Reason::Behind);
         }
-        self.is_outside(3.0 * MOST_STRETCH * radius + moved, &bounds).then_some(Reason::Outside)
+        self.is_outside(3.0 * LARGEST_STRETCH * radius + moved, &bounds).then_some(Reason::Outside)
     }
 
     /// Whether all splats of discs with centres in the box, that extend by `reach`, are beyond a side of the picture.

@@ -19,7 +19,8 @@ use std::sync::Arc;
 const WORKGROUP: u64 = 64;
 /// Workgroups that share the large triangles of a dispatch's instances.
 const LARGE_WORKGROUPS: u32 = 256;
-/// Workgroups per row of a dispatch over pixels; within every device's limits.
+/// Workgroups per row of a dispatch over pixels or groups, for which it is CLUSTER_COLUMNS of `lib/visible_clusters.glsl`; within every device's
+/// limits.
 const WORKGROUPS_X: u32 = 32_768;
 
 /// Columns and rows of pixels of a workgroup of passes over pixels (`lib/pixel_group.glsl`).

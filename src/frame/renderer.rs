@@ -94,7 +94,8 @@ impl Renderer {
     }
 
     /// Renders a frame of a scene, or of several placed ones, and waits for it. Creates no resources that a previous frame of the same
-    /// scenes and variant created, if at most one other variant was rendered between.
+    /// scenes and variant created, if at most one other variant was rendered between. With levels of detail, a frame that draws more surfels may
+    /// create larger lists.
     pub fn render<'a>(
         &mut self,
         scenes: impl Into<Instances<'a, Scene>>,

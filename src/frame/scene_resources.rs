@@ -160,7 +160,7 @@ impl SceneResources {
     /// Sets the surfel and instance counts of the next frame, its groups, and the curve along which the scene's surfels are sorted. `at_end`:
     /// its splats are the last ones of the frame.
     pub fn set_frame(&mut self, scene: &Scene, instances: u64, selection: &Selection, at_end: bool) {
-        (self.count, self.instances) = (scene.count(), instances);
+        (self.count, self.instances) = (selection.count(), instances);
         if self.clusters.is_some() {
             let room = self.range.as_ref().map_or(&[][..], ListRange::room);
             (self.groups, self.culled) = (selection.lists(room, at_end), selection.culled());

@@ -20,13 +20,22 @@ const LEAST_STEP: u64 = 16;
 pub struct Selection {
     /// Of each batch in use, the groups of each chunk.
     lists: Vec<Vec<Group>>,
-    /// Slots that each list has room for: of all groups, or of a few more than are selected, if the scene has levels of detail.
+    /// Slots that each list has room for: of all groups, or if the list is compact, of a few more than are selected.
     room: Vec<u64>,
-    has_levels: bool,
+    /// The groups have consecutive slots.
+    compact: bool,
     culled: Counts,
+    /// Surfels of an instance.
+    count: u64,
 }
 
 impl Selection {
+    /// Nothing, for a frame that has no list.
+    pub fn none(scene: &Scene) -> Self {
+        let (lists, room, culled) = (Vec::new(), Vec::new(), Counts::zeroed());
+        Self { lists, room, compact: false, culled, count: scene.count() }
+    }
+
     /// Selects the groups of so many instances of a scene, which these cull.
     pub fn new<'a>(
         scene: &Scene,
@@ -34,15 +43,15 @@ impl Selection {
         instances: u64,
         culling: impl Fn(u64) -> GroupCulling<'a>,
     ) -> Self {
-        let has_levels = scene.level_table().is_some();
-        let mut selection =
-            Self { lists: Vec::new(), room: Vec::new(), has_levels, culled: Counts::zeroed() };
+        let mut selection = Self::none(scene);
         let used = (0..batches.count()).filter(|batch| batches.range(*batch).start < instances);
         scene.with_groups(|bounds| {
+            // Without bounds, frames may not cull clusters, and have a slot for every surfel.
+            selection.compact = bounds.is_some() && scene.level_table().is_some();
             for (batch, (index, chunk)) in
                 used.flat_map(|batch| scene.chunks().iter().enumerate().map(move |chunk| (batch, chunk)))
             {
-                let present = chunk.start..chunk.end.min(scene.count());
+                let present = chunk.start..chunk.end.min(selection.count);
                 let of_instance = slots(chunk.end - chunk.start) / CLUSTER;
                 let mut list = Vec::new();
                 for instance in batches.range(batch).filter(|instance| *instance < instances) {
@@ -51,7 +60,7 @@ impl Selection {
                     selection.add(&mut list, (index, index * of_instance), &present, bounds);
                 }
                 let all = batches.len(batch) * of_instance;
-                let room = if has_levels { padded(clusters(&list)).min(all) } else { all };
+                let room = if selection.compact { padded(clusters(&list)).min(all) } else { all };
                 selection.room.push(CLUSTER * room);
                 selection.lists.push(list);
             }
@@ -72,10 +81,10 @@ impl Selection {
             let reason = bounds.as_ref().and_then(|(bounds, by)| by.reason(&bounds[index], &surfels));
             let count = (surfels.end - surfels.start).div_ceil(CLUSTER) as u32;
             match reason {
-                Some(reason) => self.count(reason, (surfels.end - surfels.start) as u32),
+                Some(reason) => self.add_culled(reason, (surfels.end - surfels.start) as u32),
                 None => {
                     let cluster = GROUP * index as u64;
-                    let slot = if self.has_levels { clusters(list) } else { first + cluster };
+                    let slot = if self.compact { clusters(list) } else { first + cluster };
                     fill(list, slot);
                     list.push(Group {
                         first: cluster as u32,
@@ -88,10 +97,15 @@ impl Selection {
         }
     }
 
-    fn count(&mut self, reason: Reason, surfels: u32) {
+    fn add_culled(&mut self, reason: Reason, surfels: u32) {
         let culled = &mut self.culled.culled[reason as usize];
         *culled = culled.saturating_add(surfels);
         self.culled.in_clusters = self.culled.in_clusters.saturating_add(surfels);
+    }
+
+    /// Surfels of an instance.
+    pub fn count(&self) -> u64 {
+        self.count
     }
 
     /// Surfels of culled groups, by reason.
@@ -105,7 +119,7 @@ impl Selection {
         let mut room = self.room.clone();
         let used = self.used_at_end();
         if let (Some(last), Some(earlier)) = (room.last_mut(), earlier)
-            && self.has_levels
+            && self.compact
             && (used..=2 * *last).contains(&earlier)
         {
             *last = earlier;
@@ -135,7 +149,7 @@ fn clusters(list: &[Group]) -> u64 {
     list.last().map_or(0, |group| u64::from(group.slot) + u64::from(group.count))
 }
 
-/// Clusters that slots are allocated for, if so many are selected: a moving camera selects others. A quarter more at most.
+/// Clusters that slots are allocated for, if so many are selected: a moving camera selects others. A quarter more at most, or [`LEAST_STEP`].
 fn padded(clusters: u64) -> u64 {
     clusters.max(1).next_multiple_of((clusters.next_power_of_two() / 8).max(LEAST_STEP))
 }

@@ -334,8 +334,8 @@ pub fn workgroup_of(device: &Device, extent: ListExtent) -> Option<TileWorkgroup
     ((SPLAT * extent.splats).max(clips) <= range).then(|| TileWorkgroup::of(0, capabilities.shared_lanes))
 }
 
-/// Instance capacity for so many instances, so that adding one does not reallocate each time: at most an eighth more, a quarter just above
-/// powers of two.
+/// Instance capacity for so many instances, so that adding one does not reallocate each time, unless it begins a batch: at most an eighth more,
+/// a quarter just above powers of two.
 pub fn padded_instances(instances: u64) -> u64 {
     instances.next_multiple_of((instances.next_power_of_two() / 8).max(1))
 }

@@ -8,7 +8,7 @@ use crate::vk::shaders::layout::Cluster;
 use crate::vk::{Buffer, Uploads};
 use glam::Vec3;
 use std::ops::Range;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Consecutive surfels of a cluster: CLUSTER_SIZE of `lib/cluster.glsl`.
 pub(crate) const CLUSTER: u64 = 64;
@@ -26,7 +26,7 @@ pub(crate) struct Clusters {
 }
 
 /// Bounds, which updates extend.
-struct Known {
+pub(super) struct Known {
     /// The bounds in the buffer.
     clusters: Vec<ClusterBounds>,
     /// Those of groups of them, chunk by chunk.
@@ -85,31 +85,46 @@ impl Clusters {
         body(&self.known.lock().unwrap_or_else(PoisonError::into_inner).groups)
     }
 
-    /// Includes changes of the surfels `changed` of `count`, and uploads the bounds of their clusters.
+    /// Uploads the bounds of the clusters with surfels `changed` of `count`, changes included. They are known once the change is kept.
     pub fn change(
         &self,
         uploads: &Uploads<'_>,
         changed: Range<u64>,
         changes: &Changes<'_>,
         count: u64,
-    ) -> Result<()> {
+    ) -> Result<Option<ClusterChange<'_>>> {
         if changed.is_empty()
             || (changes.positions.is_none() && changes.normals.is_none() && changes.radii.is_none())
         {
-            return Ok(());
+            return Ok(None);
         }
         let first = changed.start / CLUSTER;
-        let indices = first..changed.end.div_ceil(CLUSTER);
-        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        let Known { clusters, groups } = &mut *known;
-        for index in indices.clone() {
-            let bounds = &mut clusters[index as usize];
-            *bounds = bounds.with(changed.clone(), changes, range(index, count));
-        }
-        groups::update(groups, &self.chunks, clusters, &changed);
-        let words: Vec<_> =
-            clusters[first as usize..indices.end as usize].iter().map(ClusterBounds::words).collect();
-        uploads.write(&self.buffer, first * size_of::<Cluster>() as u64, bytemuck::cast_slice(&words))
+        let known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let bounds: Vec<_> = (first..changed.end.div_ceil(CLUSTER))
+            .map(|index| known.clusters[index as usize].with(changed.clone(), changes, range(index, count)))
+            .collect();
+        let words: Vec<_> = bounds.iter().map(ClusterBounds::words).collect();
+        uploads.write(&self.buffer, first * size_of::<Cluster>() as u64, bytemuck::cast_slice(&words))?;
+        Ok(Some(ClusterChange { known, chunks: &self.chunks, changed, bounds }))
+    }
+}
+
+/// A change of bounds that is uploaded, and lost unless it is kept: a frame must not cull by the bounds of an update that failed.
+pub(super) struct ClusterChange<'a> {
+    known: MutexGuard<'a, Known>,
+    chunks: &'a [Range<u64>],
+    changed: Range<u64>,
+    /// Of the clusters with changed surfels.
+    bounds: Vec<ClusterBounds>,
+}
+
+impl ClusterChange<'_> {
+    /// Keeps the change.
+    pub fn keep(mut self) {
+        let Known { clusters, groups } = &mut *self.known;
+        clusters[(self.changed.start / CLUSTER) as usize..][..self.bounds.len()]
+            .copy_from_slice(&self.bounds);
+        groups::update(groups, self.chunks, clusters, &self.changed);
     }
 }
 

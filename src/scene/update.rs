@@ -1,5 +1,6 @@
 //! Updates of surfels on the GPU.
 
+use super::clusters::ClusterChange;
 use super::live::check_bounds;
 use super::{ColourStream, Scene, Stream, bent_normals, largest};
 use crate::error::{Error, Result};
@@ -65,9 +66,9 @@ impl Scene {
             // The bits of non-negative floats are in the order of the floats.
             known.fetch_max(largest(radii).to_bits(), Ordering::Relaxed);
         }
-        if let Some(clusters) = &self.clusters {
-            clusters.change(uploads, range, changes, self.capacity())?;
-        }
+        let clusters = self.clusters.as_ref();
+        let clusters = clusters.map(|clusters| clusters.change(uploads, range, changes, self.capacity()));
+        let clusters = clusters.transpose()?.flatten();
         write(uploads, Some(&self.positions), first, changes.positions)?;
         if self.curvatures {
             let bent = changes.normals.map(|normals| bent_normals(normals, changes.curvatures));
@@ -83,7 +84,9 @@ impl Scene {
             Some(Colours::Linear(colours)) => write(uploads, self.colours.as_ref(), first, Some(colours))?,
             None => {}
         }
-        bounds.map_or(Ok(()), |bounds| self.set_bounds(bounds))
+        bounds.map_or(Ok(()), |bounds| self.set_bounds(bounds))?;
+        clusters.into_iter().for_each(ClusterChange::keep);
+        Ok(())
     }
 
     fn check(&self, range: &Range<u64>, changes: &Changes<'_>) -> Result<()> {

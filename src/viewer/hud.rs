@@ -180,10 +180,13 @@ impl Hud {
         if set.is_empty() && free.is_empty() {
             return Ok(());
         }
-        let (renderer, pool) = (&mut self.renderer, self.pool.handle());
-        let done = self.device.submit(|queue, _| {
-            let mut all = set.iter().flat_map(|(id, deltas)| deltas.iter().map(move |delta| (*id, delta)));
-            all.try_for_each(|(id, delta)| renderer.set_texture(queue, pool, id, delta))
+        let Self { renderer, pool, device, .. } = self;
+        let done = pool.with_handle(|pool| {
+            device.submit(|queue, _| {
+                let mut all =
+                    set.iter().flat_map(|(id, deltas)| deltas.iter().map(move |delta| (*id, delta)));
+                all.try_for_each(|(id, delta)| renderer.set_texture(queue, pool, id, delta))
+            })
         })?;
         done.map_err(|error| convert_error(&error))?;
         self.device.wait_idle()?;

@@ -22,10 +22,11 @@ impl CommandPool {
         Ok(Self { raw: raw.map_err(Error::vulkan("vkCreateCommandPool"))?, device: device.clone() })
     }
 
-    /// The Vulkan handle.
+    /// Calls `body` with the Vulkan handle, while no other thread begins or destroys command buffers, if labels are enabled.
     #[cfg(feature = "window")]
-    pub fn handle(&self) -> vk::CommandPool {
-        self.raw
+    pub fn with_handle<R>(&self, body: impl FnOnce(vk::CommandPool) -> R) -> R {
+        let _alone = self.device.labels.as_ref().map(Labels::lock);
+        body(self.raw)
     }
 
     /// Allocates a command buffer that lives as long as the pool.

@@ -55,6 +55,18 @@ fn fresh(device: &Arc<Device>, list: &[Instance], camera: &Camera, settings: &Se
     renderer.render_picture(list, camera, settings).unwrap().0
 }
 
+/// The surfels in an order of no use: their clusters have no bounds.
+fn shuffled(surfels: &Surfels) -> Surfels {
+    let order: Vec<_> = (0..surfels.len()).map(|i| i * 7_919 % surfels.len()).collect();
+    let of = |values: &[Vec3]| order.iter().map(|i| values[*i]).collect::<Vec<_>>();
+    Surfels {
+        positions: of(&surfels.positions),
+        normals: of(&surfels.normals),
+        radii: order.iter().map(|i| surfels.radii[*i]).collect(),
+        ..Surfels::default()
+    }
+}
+
 #[test]
 fn frames_of_a_path_are_those_of_new_renderers() {
     let Some(device) = device(DeviceLimits::default()) else { return };
@@ -92,15 +104,7 @@ fn frames_of_a_path_are_those_of_new_renderers() {
 fn instances_that_are_gone_leave_nothing() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let sorted = bumpy(300);
-    // Clusters of surfels in arbitrary order have no bounds.
-    let order: Vec<_> = (0..300).map(|i| (i * 77) % 300).collect();
-    let of = |values: &[Vec3]| order.iter().map(|i| values[*i]).collect::<Vec<_>>();
-    let shuffled = Surfels {
-        positions: of(&sorted.positions),
-        normals: of(&sorted.normals),
-        radii: order.iter().map(|i| sorted.radii[*i]).collect(),
-        ..Surfels::default()
-    };
+    let shuffled = shuffled(&sorted);
     let camera = looking(DVec3::new(0.0, 0.0, 8.0), DVec3::ZERO);
     let place = |i: usize| {
         let [x, y] = [i % 8, i / 8].map(|k| 0.8 * (k as f64 - 3.0));
@@ -137,5 +141,21 @@ fn surfels_that_move_into_the_picture_are_drawn() {
         let (expected, _) = renderer.render_picture(&of_new, &camera, &splats_alone()).unwrap();
         assert!(picture == expected, "{range:?}");
     }
+    assert_silent(&device);
+}
+
+/// Frames that cull no clusters write the boxes of all slots, also of surfels that the scene has room for.
+#[test]
+fn levels_without_bounds_have_a_slot_for_every_surfel() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let levels = Levels::of(shuffled(&bumpy(30_000))).unwrap();
+    let scene = Scene::upload(&device, &levels).unwrap();
+    assert!(!scene.streams().clusters);
+    scene.set_count(1_000).unwrap();
+    let mut renderer = Renderer::new(&device, options()).unwrap();
+    let settings = Settings { lod: 2.0, ..splats_alone() };
+    renderer.render(&scene, &path()[0].1, &settings).unwrap();
+    let splats = (levels.surfels.len() * size_of::<surfel::frame::Splat>()) as u64;
+    assert!(renderer.splat_bytes() > splats, "{} bytes", renderer.splat_bytes());
     assert_silent(&device);
 }
