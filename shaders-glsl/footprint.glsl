@@ -257,8 +257,8 @@ Box box_of_splat(uint i, Splat splat) {
     return box;
 }
 
-void store_attributes(uint slot, uint i, Splat splat) {
-    uint k = chunk.attribute_rows * splat_index(slot);
+void store_attributes(uint entry, uint i, Splat splat) {
+    uint k = chunk.attribute_rows * splat_index(entry);
     vec4 corners;
     mat2 square;
     vec3 attribute0, attribute1;
@@ -272,17 +272,17 @@ void store_attributes(uint slot, uint i, Splat splat) {
     }
 }
 
-// Index of the surfel whose splat is in a slot of the list, so that splats of neighbours are neighbours.
-uint surfel_of(uint slot) {
-    return UNORDERED ? order[slot] : slot;
+// Surfel of an entry in the order of the chunk's surfels, in which splats of neighbours are neighbours.
+uint surfel_of(uint entry) {
+    return UNORDERED ? order[entry] : entry;
 }
 
-// Stores the result of surfel i in a slot.
-void store(uint slot, uint i, uint reason, Splat splat) {
-    uint index = splat_index(slot);
+// Stores the result of surfel i, which has this entry.
+void store(uint entry, uint i, uint reason, Splat splat) {
+    uint index = splat_index(entry);
     splat_boxes[index] = reason == DRAWN ? box_of_splat(i, splat) : EMPTY_BOX;
     if (reason == DRAWN) {
-        store_attributes(slot, i, splat);
+        store_attributes(entry, i, splat);
         // Frame lists hold distances in the world's unit.
         if (INSTANCED && has_linear_depth()) scale_plane(view.scale, splat.plane_hi, splat.plane_lo);
         store_splat(index, splat);
@@ -291,40 +291,40 @@ void store(uint slot, uint i, uint reason, Splat splat) {
     }
 }
 
-// Whether a slot has a surfel. Marks the padding of the list as empty.
-bool has_surfel(uint slot) {
-    bool exists = slot < chunk.count && instance_index() < chunk.instance_count;
-    if (!exists && slot < chunk.instance_stride) splat_boxes[splat_index(slot)] = EMPTY_BOX;
+// Whether an entry has a surfel. Marks the padding of the list as empty.
+bool has_surfel(uint entry) {
+    bool exists = entry < chunk.count && instance_index() < chunk.instance_count;
+    if (!exists && entry < chunk.instance_stride) splat_boxes[splat_index(entry)] = EMPTY_BOX;
     return exists;
 }
 
 #else
 
-uint surfel_of(uint slot) {
-    return slot;
+uint surfel_of(uint entry) {
+    return entry;
 }
 
-uint surfel_of_invocation() {
+uint entry_of_invocation() {
     return gl_GlobalInvocationID.x;
 }
 
-void store(uint slot, uint i, uint reason, Splat splat) {
-    store_splat(splat_index(slot), splat);
+void store(uint entry, uint i, uint reason, Splat splat) {
+    store_splat(splat_index(entry), splat);
 }
 
-bool has_surfel(uint slot) {
-    return slot < chunk.count;
+bool has_surfel(uint entry) {
+    return entry < chunk.count;
 }
 
 #endif
 
 void main() {
-    uint slot = surfel_of_invocation();
-    if (!has_surfel(slot)) return;
-    uint i = surfel_of(slot);
+    uint entry = entry_of_invocation();
+    if (!has_surfel(entry)) return;
+    uint i = surfel_of(entry);
     Splat splat = Splat(vec2(0.0), vec2(1.0, 0.0), 1.0, 0.0, 0, 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
     uint reason = footprint(i, splat);
-    store(slot, i, reason, splat);
+    store(entry, i, reason, splat);
     count(reason);
 }
 

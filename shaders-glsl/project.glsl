@@ -130,7 +130,7 @@ void main() {
 
 void main() {
 #ifdef PER_CLUSTER
-    uint i = surfel_of_invocation();
+    uint i = entry_of_invocation();
 #else
     uint i = gl_GlobalInvocationID.x;
 #endif

@@ -56,8 +56,8 @@ float front_key(uvec2 pixel) {
     return uintBitsToFloat(visibility[pixel_index(ivec2(pixel))] & ~FULL_PIXEL);
 }
 
-bool has_surfel(uint slot) {
-    return slot < chunk.count && instance_index() < chunk.instance_count;
+bool has_surfel(uint entry) {
+    return entry < chunk.count && instance_index() < chunk.instance_count;
 }
 
 #else
@@ -68,12 +68,12 @@ float front_key(uvec2 pixel) {
     return texelFetch(visibility_image, ivec2(pixel), 0).r;
 }
 
-uint surfel_of_invocation() {
+uint entry_of_invocation() {
     return gl_GlobalInvocationID.x;
 }
 
-bool has_surfel(uint slot) {
-    return slot < chunk.count;
+bool has_surfel(uint entry) {
+    return entry < chunk.count;
 }
 
 #endif
@@ -92,19 +92,19 @@ float key_behind(Splat splat) {
 }
 
 void main() {
-    uint slot = surfel_of_invocation();
-    if (!has_surfel(slot)) return;
-    Splat splat = splat_of(slot);
+    uint entry = entry_of_invocation();
+    if (!has_surfel(entry)) return;
+    Splat splat = splat_of(entry);
     if (!is_drawn(splat) || !is_back(splat)) return;
     if (front_key(uvec2(anchor_of(splat))) < key_behind(splat)) {
 #ifdef TILES
-        if (OPENS_TILES) open_tiles_of(splat_boxes[splat_index(slot)]);
+        if (OPENS_TILES) open_tiles_of(splat_boxes[splat_index(entry)]);
 #endif
         return;
     }
-    store_culled(splat_index(slot));
+    store_culled(splat_index(entry));
 #ifdef TILES
-    splat_boxes[splat_index(slot)] = EMPTY_BOX;
+    splat_boxes[splat_index(entry)] = EMPTY_BOX;
 #endif
     count(BACK);
 }

@@ -24,9 +24,9 @@ const uint CLUSTER_COLUMNS = 32768;
 VisibleCluster visible;
 #define INSTANCE (CLUSTERS ? visible.instance : chunk.first_instance + gl_WorkGroupID.z)
 
-// Index in the chunk of the invocation's surfel, or of its entry in the order of surfels; ~0 in workgroups beyond the list. Sets the visible
-// cluster.
-uint surfel_of_invocation() {
+// Entry of the invocation in the order of the chunk's surfels, which is that of storage unless lib/order.glsl has another; ~0 in workgroups
+// beyond the list. Sets the visible cluster.
+uint entry_of_invocation() {
     if (!CLUSTERS) return gl_GlobalInvocationID.x;
     uint index = CLUSTER_COLUMNS * gl_WorkGroupID.y + gl_WorkGroupID.x;
     if (index >= visible_count) return ~0u;

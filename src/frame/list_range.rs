@@ -8,12 +8,11 @@ use crate::vk::shaders;
 use std::sync::Arc;
 
 /// A scene's range of a list.
-#[derive(Clone)]
 pub struct ListRange {
     /// The list.
     pub list: Arc<SplatList>,
     /// Start of the range.
-    pub first: ListExtent,
+    first: ListExtent,
     /// Slots of each chunk of each batch in use.
     room: Vec<u64>,
     chunks: usize,
