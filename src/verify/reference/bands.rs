@@ -42,10 +42,8 @@ pub(super) struct Hit {
     pub at: DVec2,
     /// Offset of the pixel centre from the splat's centre, px.
     pub offset: DVec2,
-    /// The offset along the kernel's axes, in σ.
+    /// The offset along the kernel's axes, in σ; its length is `√(e (V+H)⁻¹ eᵀ)`.
     pub in_kernel: DVec2,
-    /// Length of `in_kernel`: `√(e (V+H)⁻¹ eᵀ)`.
-    pub sigmas: f64,
     /// Value that is compared with the cut-off, in σ; see [`Ellipse::rim`].
     pub rim: f64,
     /// Signed distance to the part that clip lines remove, px; below 0 in that part.
@@ -151,16 +149,14 @@ impl<'a> Band<'a> {
             for column in (low - 0.5).max(0.0) as u32..last.max(0.0) as u32 {
                 let at = DVec2::new(f64::from(column) + 0.5, y);
                 let offset = at - ellipse.centre;
-                let rim = ellipse.rim(offset);
+                let in_kernel = ellipse.in_kernel(offset);
+                let rim = ellipse.rim_in_kernel(in_kernel);
                 if rim <= reach {
-                    let (index, in_kernel) =
-                        ((row * self.width + column) as usize, ellipse.in_kernel(offset));
                     visit(Hit {
-                        index,
+                        index: (row * self.width + column) as usize,
                         at,
                         offset,
                         in_kernel,
-                        sigmas: in_kernel.length(),
                         rim,
                         clip_distance: ellipse.clip_distance(at),
                         turn_distance: ellipse.turn_distance(at),

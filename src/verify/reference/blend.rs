@@ -49,11 +49,12 @@ pub(super) struct Contribution {
 
 impl Fragment {
     pub fn of(model: &ErrorModel, c: &Candidate) -> Self {
-        let sums = Sums::of(model.projector, c.splat, c.weight, c.depth);
+        let weight = model.weight(c);
+        let sums = Sums::of(model.projector, c.splat, weight.value, c.depth);
         Self {
             rank: c.rank(c.depth),
             tolerance: c.depth_tolerance(),
-            contribution: Contribution { sums, rounding_sums: RoundingSums::of(model, c) },
+            contribution: Contribution { sums, rounding_sums: RoundingSums::of(model, c, &weight) },
             certain: c.certain,
             or_clipped: c.or_clipped,
             or_kept: c.or_kept,

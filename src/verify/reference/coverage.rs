@@ -70,7 +70,7 @@ fn nearest(offset: DVec2, tolerance: f64) -> impl Iterator<Item = u32> {
 
 /// The samples that the splat certainly covers, and those that it may cover.
 pub(super) fn certain_and_possible(solid: &Ellipse, offset: DVec2) -> [Mask; 2] {
-    let tolerance = TOLERANCE[0] + TOLERANCE[1] * solid.cutoff * solid.sigma().x;
+    let tolerance = TOLERANCE[0] + TOLERANCE[1] * solid.cutoff * solid.sigma.x;
     // Inside, if the sample moves outwards (below 0) or inwards by `margin` px.
     let inside = |at: DVec2, margin: f64| {
         let undecided = solid.is_undecided(at, margin.abs());

@@ -32,6 +32,8 @@ pub(super) struct Ellipse {
     pub axis: DVec2,
     /// Variances along the major and the minor axis, px².
     pub variance: DVec2,
+    /// 1-σ lengths of the major and the minor axis, px.
+    pub sigma: DVec2,
     /// `√(|V| / |V'|)`: height of the filtered kernel relative to the unfiltered one.
     pub amplitude: f64,
     /// Cut-off `F`, in σ.
@@ -100,6 +102,7 @@ impl Ellipse {
             centre,
             axis: DVec2::from_angle(angle),
             variance,
+            sigma: DVec2::new(variance.x.sqrt(), variance.y.sqrt()),
             amplitude: splat.sqrt_det / (variance.x * variance.y).sqrt(),
             cutoff: projector.cutoff(),
             horizon: on_plane.then(|| splat.plane / splat.plane.dot(DVec3::new(1.0, centre.x, centre.y))),
@@ -117,7 +120,7 @@ impl Ellipse {
     /// Position in the kernel of the offset `e` from the centre: along its axes, in σ. In perspective the image of a
     /// plane is a homography; one that keeps the centre is affine but for the division by the plane's inverse distance.
     pub fn in_kernel(&self, offset: DVec2) -> DVec2 {
-        self.principal(offset) / self.sigma() / self.nearness(offset)
+        self.principal(offset) / self.sigma / self.nearness(offset)
     }
 
     /// Factor by which perspective shrinks a kernel in the tangent plane at the offset `e` from the centre.
@@ -136,7 +139,11 @@ impl Ellipse {
     /// Value that is compared with the cut-off at the offset `e` from the centre, in σ: the distance, or for a square
     /// the larger coordinate.
     pub fn rim(&self, offset: DVec2) -> f64 {
-        let y = self.in_kernel(offset);
+        self.rim_in_kernel(self.in_kernel(offset))
+    }
+
+    /// The same of a position in the kernel, in σ.
+    pub fn rim_in_kernel(&self, y: DVec2) -> f64 {
         if self.square { y.abs().max_element() } else { y.length() }
     }
 
@@ -167,7 +174,7 @@ impl Ellipse {
 
     /// Its maximum over the outline, in σ of the minor axis.
     pub fn outline_error_sigmas(&self) -> f64 {
-        self.axis_error * self.stretch() * self.cutoff * self.sigma().x / self.sigma().y
+        self.axis_error * self.stretch() * self.cutoff * self.sigma.x / self.sigma.y
     }
 
     /// Factor by which the outline can extend beyond the ellipse.
@@ -222,11 +229,6 @@ impl Ellipse {
         (slope - sigmas).max(0.0)
     }
 
-    /// 1-σ lengths of the major and the minor axis, px.
-    pub fn sigma(&self) -> DVec2 {
-        DVec2::new(self.variance.x.sqrt(), self.variance.y.sqrt())
-    }
-
     /// The offset along the major and the minor axis.
     fn principal(&self, offset: DVec2) -> DVec2 {
         DVec2::new(self.axis.dot(offset), self.axis.perp_dot(offset))
@@ -234,8 +236,8 @@ impl Ellipse {
 
     /// Least and greatest corner of a box around the outline, px: `x_t ± F √V'ᵢᵢ`, or larger for other outlines.
     pub fn bounds(&self) -> (DVec2, DVec2) {
-        let along = self.stretch() * self.cutoff * self.sigma().x * self.axis;
-        let across = self.stretch() * self.cutoff * self.sigma().y * self.axis.perp();
+        let along = self.stretch() * self.cutoff * self.sigma.x * self.axis;
+        let across = self.stretch() * self.cutoff * self.sigma.y * self.axis.perp();
         let half = DVec2::new(along.x.hypot(across.x), along.y.hypot(across.y));
         (self.centre - half, self.centre + half)
     }
@@ -257,7 +259,7 @@ impl Ellipse {
     /// Whether a move by `margin` px may take the point at `offset` from the centre across the outline.
     pub fn is_undecided(&self, offset: DVec2, margin: f64) -> bool {
         if self.is_plain() {
-            let reach = margin / self.sigma().y;
+            let reach = margin / self.sigma.y;
             return (self.rim(offset) - self.cutoff).abs() <= reach && self.distance(offset) <= margin;
         }
         // The change of either kernel coordinate is bounded separately: across a thin kernel one px may be many σ,
@@ -265,7 +267,7 @@ impl Ellipse {
         let nearness = self.nearness(offset);
         let slope = self.horizon.map_or(0.0, |plane| DVec2::new(plane.y, plane.z).length());
         let y = self.in_kernel(offset).abs();
-        let change = margin * (1.0 / self.sigma() + y * slope) / nearness;
+        let change = margin * (1.0 / self.sigma + y * slope) / nearness;
         let rim = |y: DVec2| if self.square { y.max_element() } else { y.length() };
         rim((y - change).max(DVec2::ZERO)) <= self.cutoff && rim(y + change) >= self.cutoff
     }
@@ -278,7 +280,7 @@ impl Ellipse {
             let slope = DVec2::new(along(step * DVec2::X), along(step * DVec2::Y)).length();
             return (self.rim(offset) - self.cutoff).abs() / slope;
         }
-        to_ellipse(self.cutoff * self.sigma(), self.principal(offset).abs())
+        to_ellipse(self.cutoff * self.sigma, self.principal(offset).abs())
     }
 }
 
@@ -383,6 +385,7 @@ mod tests {
             centre: DVec2::new(10.0, 20.0),
             axis: DVec2::from_angle(0.7),
             variance: DVec2::new(9.0, 0.25),
+            sigma: DVec2::new(3.0, 0.5),
             amplitude: 1.0,
             cutoff: 2.0,
             horizon: None,

@@ -14,7 +14,7 @@ use super::blend::{Blend, Blended, Contribution, Fragment, value_of};
 use super::coverage::SampleCounts;
 use super::depth_range::DepthRanges;
 use super::ellipse::Ellipse;
-use super::error_model::{Candidate, ErrorModel};
+use super::error_model::{Candidate, ErrorModel, Weight};
 use super::nearest::ranked;
 use super::normalize::Value;
 use super::projected_scene::ProjectedScene;
@@ -140,7 +140,7 @@ fn of_band(
                 ambiguous[c.pixel].get_or_insert_default();
             }
             if passes {
-                rounding_sums[c.pixel][surface] += RoundingSums::of(model, &c);
+                rounding_sums[c.pixel][surface] += RoundingSums::of(model, &c, &model.weight(&c));
             }
         }
     });
@@ -186,9 +186,10 @@ fn nearest_of_band(
     let mut contributions: Vec<Vec<Contribution>> = vec![Vec::new(); band.len()];
     model.scan(band, &splats, Ellipse::visibility, |c| {
         if c.rank(ranked(c.splat, c.depth)).farther(-c.depth_tolerance()) <= farthest[c.pixel] {
-            let c = Candidate { weight: 1.0, ..c };
-            let sums = Sums::of(model.projector, c.splat, 1.0, c.depth);
-            contributions[c.pixel].push(Contribution { sums, rounding_sums: RoundingSums::of(model, &c) });
+            let weight = Weight { value: 1.0, ..model.weight(&c) };
+            let sums = Sums::of(model.projector, c.splat, weight.value, c.depth);
+            let rounding_sums = RoundingSums::of(model, &c, &weight);
+            contributions[c.pixel].push(Contribution { sums, rounding_sums });
         }
     });
     let covered = SampleCounts::of_band(model, scene, band);

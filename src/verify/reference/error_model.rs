@@ -21,14 +21,9 @@ pub(super) struct Candidate<'a> {
     pub depth: f64,
     /// Error bound of the depth; see [`super::Tolerance::rounding`].
     pub depth_error: f64,
-    /// The kernel's weight.
-    pub weight: f64,
-    /// Relative error bound of the weight.
-    pub weight_error: f64,
-    /// Relative error bound of the weight by a shift of the whole splat on the screen.
-    pub shift_error: f64,
-    /// Relative rounding error of the weight's evaluation in float32, in half units in the last place.
-    pub half_ulps: f64,
+    ellipse: &'a Ellipse,
+    /// Position of the pixel's centre in the kernel, σ.
+    in_kernel: DVec2,
     /// Whether the pixel is certainly inside the cut-off and the clip volume.
     pub certain: bool,
     /// Whether it is beyond the splat's clip lines.
@@ -49,6 +44,17 @@ impl Candidate<'_> {
     pub fn depth_tolerance(&self) -> f64 {
         self.depth_error.max(DEPTH_TOLERANCE * self.depth.abs())
     }
+}
+
+/// A kernel's weight at a pixel's centre.
+pub(super) struct Weight {
+    pub value: f64,
+    /// Relative error bound.
+    pub error: f64,
+    /// Relative error bound by a shift of the whole splat on the screen.
+    pub shift_error: f64,
+    /// Relative rounding error of its evaluation in float32, in half units in the last place.
+    pub half_ulps: f64,
 }
 
 /// The error model of a frame.
@@ -95,10 +101,8 @@ impl ErrorModel<'_> {
             let ellipse = footprint(splat, self.projector);
             // The gradient of the distance in σ is at most 1 / (minor σ) per px; a kernel in the plane adds its
             // stretch and slope.
-            let slope = if ellipse.is_plain() { 1.0 / ellipse.sigma().y } else { 64.0 };
+            let slope = if ellipse.is_plain() { 1.0 / ellipse.sigma.y } else { 64.0 };
             let reach = slope * CUTOFF_TOLERANCE + ellipse.outline_error_sigmas();
-            // Rounding of a pixel coordinate, in σ.
-            let shift = self.rounding * self.projector.size.max_element() / ellipse.sigma().y;
             band.scan(&ellipse, ellipse.cutoff + reach, |hit| {
                 let edge = (hit.rim - ellipse.cutoff).abs() <= reach;
                 let near_rim = edge
@@ -119,12 +123,8 @@ impl ErrorModel<'_> {
                         pixel: hit.index,
                         depth,
                         depth_error,
-                        weight: ellipse.weight(hit.in_kernel),
-                        weight_error: self.rounding * (splat.secant + self.axis_gain(splat))
-                            // The same shift changes a steeper kernel more.
-                            + shift * ellipse.steepness(hit.sigmas),
-                        shift_error: shift * hit.sigmas,
-                        half_ulps: ellipse.half_ulps(hit.in_kernel),
+                        ellipse: &ellipse,
+                        in_kernel: hit.in_kernel,
                         certain: splat.certain && certain && !near_rim && !side.near && beyond > unsure,
                         clipped: side.clipped,
                         or_clipped: side.or_clipped,
@@ -132,6 +132,21 @@ impl ErrorModel<'_> {
                     });
                 }
             });
+        }
+    }
+
+    /// The weight of a splat that may cover a pixel.
+    pub fn weight(&self, c: &Candidate) -> Weight {
+        let sigmas = c.in_kernel.length();
+        // Rounding of a pixel coordinate, in σ.
+        let shift = self.rounding * self.projector.size.max_element() / c.ellipse.sigma.y;
+        Weight {
+            value: c.ellipse.weight(c.in_kernel),
+            // The same shift changes a steeper kernel more.
+            error: self.rounding * (c.splat.secant + self.axis_gain(c.splat))
+                + shift * c.ellipse.steepness(sigmas),
+            shift_error: shift * sigmas,
+            half_ulps: c.ellipse.half_ulps(c.in_kernel),
         }
     }
 

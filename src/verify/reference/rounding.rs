@@ -1,6 +1,6 @@
 //! Bounds of the rounding error of a pixel's value while no decision flips.
 
-use super::error_model::{Candidate, ErrorModel};
+use super::error_model::{Candidate, ErrorModel, Weight};
 use glam::DVec3;
 
 /// Bounds of a pixel's rounding error while no decision flips: weighted means over its splats. All but `normal_sum` are
@@ -51,19 +51,20 @@ pub(super) struct RoundingSums {
 
 impl RoundingSums {
     /// Contribution of one splat.
-    pub fn of(model: &ErrorModel, c: &Candidate) -> Self {
+    pub fn of(model: &ErrorModel, c: &Candidate, weight: &Weight) -> Self {
         let depth = model.projector.shown(c.splat, c.depth);
-        let depth_weight = if model.projector.depth.perspective { c.weight / depth } else { c.weight };
+        let depth_weight =
+            if model.projector.depth.perspective { weight.value / depth } else { weight.value };
         Self {
-            weight: c.weight,
-            normal: c.weight * c.splat.normal,
-            weight_error: c.weight * c.weight_error,
-            half_ulps: c.weight * c.half_ulps,
+            weight: weight.value,
+            normal: weight.value * c.splat.normal,
+            weight_error: weight.value * weight.error,
+            half_ulps: weight.value * weight.half_ulps,
             depth_weight,
             depth_error: depth_weight * c.depth_error,
             depth: depth_weight * depth,
             squared_depth: depth_weight * depth * depth,
-            squared_error: depth_weight * (c.weight_error + c.shift_error).powi(2),
+            squared_error: depth_weight * (weight.error + weight.shift_error).powi(2),
         }
     }
 
