@@ -14,9 +14,9 @@ pub(super) fn clip(surfels: &mut Surfels, triangles: &[[u32; 3]], sites: &Sites)
         return 0;
     }
     let new = |i: usize| {
-        let lines = boundary.of(sites.of_point[i]);
-        clip_of(lines, boundary.angles[sites.of_point[i] as usize], &|line: &Line| {
-            line.on(surfels.positions[i], surfels.normals[i], surfels.radii[i])
+        let (lines, normal) = (boundary.of(sites.of_point[i]), surfels.normals[i]);
+        clip_of(lines, boundary.angles[sites.of_point[i] as usize], normal, &|line: &Line| {
+            line.on(surfels.positions[i], normal, surfels.radii[i])
         })
     };
     let old = |i: usize| surfels.clips.as_ref().and_then(|clips| clips.get(i)).copied();
@@ -33,25 +33,26 @@ struct Line {
     /// A point of the edge, and the direction away from the mesh, in the plane of the triangle; unit.
     point: Vec3,
     outward: DVec3,
-    /// Whether the vertex is an end of the edge, not the corner of the triangle opposite to it.
-    is_end: bool,
+    /// Direction of the edge from the vertex, if this is one of its ends, not the corner of the triangle opposite to it; unit.
+    along: Option<DVec3>,
 }
 
 impl Line {
     /// The line in the tangent plane of a disc that reaches beyond it.
     fn on(&self, centre: Vec3, normal: Vec3, radius: f32) -> Option<ClipLine> {
-        let offset = match self.is_end {
-            true => 0.0,
-            false => self.outward.dot((self.point - centre).as_dvec3()),
+        let offset = match self.along {
+            Some(_) => 0.0,
+            None => self.outward.dot((self.point - centre).as_dvec3()),
         };
         let line = ClipLine::of_half_space(self.outward, offset, normal)?;
         (line.offset < radius).then_some(line)
     }
 }
 
-/// The clip at the edges that end in a vertex, whose triangles have `angle` there, radians; without any, at the nearest two edges.
-fn clip_of(lines: &[Line], angle: f64, on: &dyn Fn(&Line) -> Option<ClipLine>) -> Option<Clip> {
-    let ends: Vec<&Line> = lines.iter().filter(|line| line.is_end).collect();
+/// The clip at the edges that end in a vertex with this normal, whose triangles have `angle` there, radians; without any, at the nearest two
+/// edges.
+fn clip_of(lines: &[Line], angle: f64, normal: Vec3, on: &dyn Fn(&Line) -> Option<ClipLine>) -> Option<Clip> {
+    let ends: Vec<&Line> = lines.iter().filter(|line| line.along.is_some()).collect();
     match ends[..] {
         [a, b] => Clip::of_some([on(a), on(b)], angle > PI),
         [] => {
@@ -60,9 +61,35 @@ fn clip_of(lines: &[Line], angle: f64, on: &dyn Fn(&Line) -> Option<ClipLine>) -
             let mut nearest = near.into_iter();
             Clip::of_some([nearest.next(), nearest.next()], false)
         }
-        // Several boundaries meet here.
-        _ => None,
+        _ => {
+            let (gap, [a, b]) = widest_gap(&ends, normal)?;
+            Clip::of_some([on(a), on(b)], gap < PI)
+        }
     }
+}
+
+/// Where several boundaries meet, the widest angle without triangles around the normal, radians, and the edges that bound it; `None` where the
+/// triangles overlap, seen along the normal.
+fn widest_gap<'a>(ends: &[&'a Line], normal: Vec3) -> Option<(f64, [&'a Line; 2])> {
+    let normal = normal.as_dvec3();
+    let [x, y] = [normal.any_orthonormal_vector(), normal.cross(normal.any_orthonormal_vector())];
+    let mut edges: Vec<(f64, bool, &Line)> = ends
+        .iter()
+        .filter_map(|line| {
+            let along = line.along?;
+            // Whether the gap follows counter-clockwise.
+            let opens = normal.cross(along).dot(line.outward) > 0.0;
+            Some((along.dot(y).atan2(along.dot(x)), opens, *line))
+        })
+        .collect();
+    edges.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let next = |i: usize| edges[(i + 1) % edges.len()];
+    let alternate = (0..edges.len()).all(|i| edges[i].1 != next(i).1);
+    let gaps = (0..edges.len()).filter(|&i| edges[i].1).map(|i| {
+        let (from, to) = (edges[i], next(i));
+        ((to.0 - from.0).rem_euclid(2.0 * PI), [from.2, to.2])
+    });
+    gaps.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|_| alternate)
 }
 
 /// The boundary edges of a mesh.
@@ -91,8 +118,9 @@ impl Boundary {
                 let along = (at(b) - at(a)).as_dvec3();
                 let inwards = (at(opposite) - at(a)).as_dvec3();
                 let outward = -inwards.reject_from(along).try_normalize()?;
-                let line = |vertex, is_end| Line { vertex, point: at(a), outward, is_end };
-                Some([line(a, true), line(b, true), line(opposite, false)])
+                let along = along.normalize();
+                let line = |vertex, along| Line { vertex, point: at(a), outward, along };
+                Some([line(a, Some(along)), line(b, Some(-along)), line(opposite, None)])
             })
             .flatten()
             .collect();
@@ -170,14 +198,22 @@ mod tests {
     }
 
     #[test]
-    fn closed_meshes_and_places_where_boundaries_meet_are_not_clipped() {
+    fn closed_meshes_are_not_clipped() {
         let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
         let closed =
             Surfels { positions, normals: vec![Vec3::Z; 4], radii: vec![1.0; 4], ..Surfels::default() };
         assert_eq!(clipped((closed, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])).0, 0);
-        // Two squares that touch at a corner.
-        let (_, clip) = clipped(sheet(|x, y| (x, y) == (1, 1) || (x, y) == (2, 2)));
-        assert!(clip(2, 2).is_none() && clip(1, 1).is_some());
+    }
+
+    #[test]
+    fn where_boundaries_meet_the_widest_gap_is_clipped() {
+        // A square and three around a corner touch there.
+        let (_, clip) = clipped(sheet(|x, y| (x, y) == (2, 2) || (x, y) == (3, 3)));
+        let one_gap = clip(3, 3).unwrap();
+        let kept = [[0.3, 0.3], [-0.3, -0.3], [-0.3, 0.3], [0.3, -0.3]]
+            .map(|[x, y]| one_gap.keeps(DVec3::new(x, y, 0.0)));
+        assert_eq!(kept.iter().filter(|kept| **kept).count(), 3, "{kept:?}");
+        assert!(kept[0] && kept[1] && one_gap.concave);
     }
 
     #[test]
