@@ -1,6 +1,6 @@
-// Sides: drops splats that face away from the eye where a surface that faces it hides them or lies at most a radius behind their centres:
-// the far side of a closed surface, which would shine past outlines as if it faced the eye. Others are the back of an open surface, and open
-// the tiles that they may change, if these have been drawn without them.
+// Sides: drops splats that face away from the eye where a surface that faces it hides them, lies at most a radius behind their centres, or is
+// beside and a little before these: the far side of a closed surface, which would shine past outlines as if it faced the eye. Others are the back
+// of an open surface, and open the tiles that they may change, if these have been drawn without them.
 #version 450
 #pragma variant TILES COMPUTE
 #extension GL_GOOGLE_include_directive : require
@@ -78,8 +78,12 @@ bool has_surfel(uint entry) {
 
 #endif
 
-// κ of the point a radius behind the centre, moved back by ε as those of visibility are.
-float key_behind(Splat splat) {
+// Radii before a centre within which a surface beside it hides it: towards outlines a surface is steep.
+const float BEFORE = 8.0;
+const ivec2 BESIDE[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
+
+// κ of the point so many radii behind the centre, moved back by ε as those of visibility are.
+float key_behind(Splat splat, float radii) {
     float key = plane_at(splat.plane_hi, splat.plane_lo, splat.offset);
 #ifdef TILES
     if (has_linear_depth()) key = frame.near / key;
@@ -87,8 +91,21 @@ float key_behind(Splat splat) {
     if (has_linear_depth()) key = view.near / key;
 #endif
     // The splat's ε is frame.epsilon radii.
-    float radii = 1.0 + 1.0 / frame.epsilon;
-    return PERSPECTIVE ? key / (1.0 + radii * (1.0 / abs(splat.epsilon) - 1.0)) : key - radii * abs(splat.epsilon);
+    float shifts = 1.0 + radii / frame.epsilon;
+    // At the eye, and behind it, κ is beyond all.
+    return PERSPECTIVE ? key / max(1.0 + shifts * (1.0 / abs(splat.epsilon) - 1.0), 1e-6) : key - shifts * abs(splat.epsilon);
+}
+
+// Whether a surface that faces the eye hides the centre, or is where the surface goes on past an outline: beside the centre, and a little before it.
+bool is_hidden(Splat splat) {
+    ivec2 centre = ivec2(anchor_of(splat)), last = ivec2(frame.viewport) - 1;
+    if (front_key(uvec2(centre)) >= key_behind(splat, 1.0)) return true;
+    float own = key_behind(splat, 0.0), before = key_behind(splat, -BEFORE);
+    for (int k = 0; k < 4; k++) {
+        float key = front_key(uvec2(clamp(centre + BESIDE[k], ivec2(0), last)));
+        if (key >= own && key <= before) return true;
+    }
+    return false;
 }
 
 void main() {
@@ -96,7 +113,7 @@ void main() {
     if (!has_surfel(entry)) return;
     Splat splat = splat_of(entry);
     if (!is_drawn(splat) || !is_back(splat)) return;
-    if (front_key(uvec2(anchor_of(splat))) < key_behind(splat)) {
+    if (!is_hidden(splat)) {
 #ifdef TILES
         if (OPENS_TILES) open_tiles_of(splat_boxes[splat_index(entry)]);
 #endif

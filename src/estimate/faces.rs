@@ -3,11 +3,16 @@
 use super::draft::Draft;
 use super::reach::reach;
 use super::{Estimate, MARGIN};
+use crate::geometry::Surfels;
 use glam::{DVec3, Vec3};
 
 /// Normals of faces whose sum is below this part of its terms cancel: the point is on two sheets back to back, and the sum is rounding
 /// error.
 const CANCELLED: f64 = 1e-3;
+
+/// Cosine of the angle between a triangle and a disc beyond which the disc only covers the triangle's projection: 60°. It would stand out far
+/// beyond the surface, where long triangles end at a depth that leaps, without covering more of them.
+const STEEP: f64 = 0.5;
 
 /// Attributes of a point from its faces.
 #[derive(Clone, Copy, Default)]
@@ -16,8 +21,6 @@ struct Corner {
     normal: DVec3,
     /// Sum of these angles.
     angle: f64,
-    /// Required radius of the disc.
-    reach: f64,
 }
 
 /// Sets missing normals to the mean normal of the triangles, weighted by their angles, and missing radii to those of discs that cover every
@@ -34,9 +37,13 @@ pub(super) fn fill(draft: &mut Draft, how: &Estimate) {
             estimated.normals_from_faces += 1;
         }
     }
-    for (radius, corner) in surfels.radii.iter_mut().zip(&corners) {
-        let reach = (MARGIN * corner.reach) as f32;
-        if *radius == 0.0 && reach > 0.0 && !how.elliptical {
+    if how.elliptical {
+        return;
+    }
+    let reaches = reaches(surfels, &draft.triangles);
+    for (radius, reach) in surfels.radii.iter_mut().zip(&reaches) {
+        let reach = (MARGIN * reach) as f32;
+        if *radius == 0.0 && reach > 0.0 {
             *radius = reach;
             estimated.radii_from_faces += 1;
         }
@@ -79,9 +86,27 @@ fn corners(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Corner> {
             let corner = &mut corners[triangle[turn] as usize];
             corner.normal += angle * cross.normalize_or_zero();
             corner.angle += angle;
-            corner.reach =
-                corner.reach.max(reach(a.length_squared(), b.length_squared(), a.distance_squared(b)));
         }
     }
     corners
+}
+
+/// Required radius of the disc at each point: it covers its parts of the triangles around the point, those of steep ones as they are projected
+/// onto its plane.
+fn reaches(surfels: &Surfels, triangles: &[[u32; 3]]) -> Vec<f64> {
+    let mut reaches = vec![0.0f64; surfels.len()];
+    for triangle in triangles {
+        let points = triangle.map(|i| surfels.positions[i as usize].as_dvec3());
+        for turn in 0..3 {
+            let [p, mut a, mut b] = [0, 1, 2].map(|i| points[(turn + i) % 3]);
+            let i = triangle[turn] as usize;
+            let normal = surfels.normals[i].as_dvec3();
+            (a, b) = (a - p, b - p);
+            if a.cross(b).normalize_or_zero().dot(normal).abs() < STEEP {
+                (a, b) = (a - a.dot(normal) * normal, b - b.dot(normal) * normal);
+            }
+            reaches[i] = reaches[i].max(reach(a.length_squared(), b.length_squared(), a.distance_squared(b)));
+        }
+    }
+    reaches
 }

@@ -1,19 +1,23 @@
-//! Pass `sides`: drops splats that face away where a surface that faces the eye hides them, or lies at most a radius
-//! behind their centres.
+//! Pass `sides`: drops splats that face away where a surface that faces the eye hides them, lies at most a radius behind
+//! their centres, or is beside and a little before these.
 
 use super::bands::{Band, Bands};
-use super::depth_range::DepthRanges;
+use super::depth_range::{DepthRange, DepthRanges};
 use super::error_model::{DEPTH_TOLERANCE, ErrorModel};
 use super::projected_scene::ProjectedScene;
 use super::rank::Rank;
 use super::{Projector, Splat, visibility};
 use glam::DVec2;
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// Rounding error of the centre on the screen in float32, px.
 const CENTRE_TOLERANCE: f64 = 1e-3;
 /// Rounding error of ε / z in float32, as it is recovered from `1 / (1 + ε / z)`.
 const SHIFT_ERROR: f64 = 4.0 / (1 << 24) as f64;
+
+/// Radii before a centre within which a surface beside it hides it: towards outlines a surface is steep.
+const BEFORE: f64 = 8.0;
 
 /// The scene without the splats that are dropped.
 pub(super) fn pass(projector: &Projector, scene: ProjectedScene, size: [u32; 2]) -> ProjectedScene {
@@ -24,16 +28,36 @@ pub(super) fn pass(projector: &Projector, scene: ProjectedScene, size: [u32; 2])
     let bands = Bands::new(projector, &fronts, size);
     let depths: Vec<Rank> =
         bands.par_iter().flat_map(|band| visibility::pass(projector, &fronts, &band)).collect();
+    let is_within = |at: [u32; 2], least: f64, most: f64| {
+        let front = depths[index(at, size)];
+        !front.clipped && (least..=most).contains(&front.depth)
+    };
     let is_dropped = |splat: &Splat| {
-        let front = depths[index(pixel(splat.centre, size), size)];
-        splat.back && !front.clipped && front.depth <= depth_behind(projector, splat)
+        let depth = |radii| depth_behind(projector, splat, radii);
+        let centre = pixel(splat.centre, size);
+        is_within(centre, f64::NEG_INFINITY, depth(1.0))
+            || beside(centre, size).any(|at| is_within(at, depth(-BEFORE), depth(0.0)))
     };
     let all = scene.splats.len();
-    let splats: Vec<_> = scene.splats.into_iter().filter(|splat| !is_dropped(splat)).collect();
+    let splats: Vec<_> =
+        scene.splats.into_iter().filter(|splat| !(splat.back && is_dropped(splat))).collect();
     let mut counts = scene.counts;
     counts.back += all - splats.len();
     counts.drawn = splats.len();
     ProjectedScene { splats, counts, ..scene }
+}
+
+/// Whether something holds, by the error model.
+#[derive(Clone, Copy, Default)]
+struct Outcome {
+    possibly: bool,
+    certainly: bool,
+}
+
+impl Outcome {
+    fn or(self, other: Self) -> Self {
+        Self { possibly: self.possibly || other.possibly, certainly: self.certainly || other.certainly }
+    }
 }
 
 /// The scene without the splats that are certainly dropped; those that rounding may drop are not
@@ -45,42 +69,78 @@ pub(super) fn possible(model: &ErrorModel, scene: ProjectedScene, size: [u32; 2]
     }
     let fronts = fronts(&scene);
     let bands = Bands::new(projector, &fronts, size);
-    // By pixel: whether each splat with a centre there is possibly and certainly dropped.
+    // By splat and pixel in which its centre may be: whether the splat is dropped, by what is seen in the pixels of a band.
     let of_band = |band: Band<'_>| {
         let ranges = DepthRanges::new(model, &fronts, &band);
         let first = (band.first_row * band.width) as usize;
-        let inside = |pixel: usize| (first..first + band.len()).contains(&pixel);
+        let of_pixel = |at: [u32; 2]| {
+            let inside = index(at, size).checked_sub(first).filter(|pixel| *pixel < band.len());
+            inside.map(|pixel| ranges.of(pixel))
+        };
         let mut found = Vec::new();
         for (number, splat) in scene.splats.iter().enumerate().filter(|(_, splat)| splat.back) {
-            for pixel in
-                pixels(splat.centre, size).map(|pixel| index(pixel, size)).filter(|&pixel| inside(pixel))
-            {
-                let depth = depth_behind(projector, splat);
-                let error = SHIFT_ERROR * (1.0 + 1.0 / f64::from(projector.settings.epsilon));
-                let rank = Rank { clipped: false, depth };
-                let tolerance = (DEPTH_TOLERANCE + error + model.rounding * splat.secant) * depth.abs();
-                // A front-facing surface hides the point where that point would not be blended with it.
-                let may_stay =
-                    ranges.of(pixel - first).any(|range| range.may_pass(rank, tolerance) || !range.exists());
-                let may_drop =
-                    ranges.of(pixel - first).any(|range| !range.must_pass(rank, tolerance) && range.exists());
-                found.push((number, may_stay, may_drop));
+            for centre in pixels(splat.centre, size) {
+                let of_centre = of_pixel(centre).map(|ranges| hides(model, splat, ranges));
+                let around = beside(centre, size).filter_map(of_pixel);
+                let of_others = around.map(|ranges| hides_beside(model, splat, ranges));
+                if let Some(outcome) = of_centre.into_iter().chain(of_others).reduce(Outcome::or) {
+                    found.push(((number, index(centre, size)), outcome));
+                }
             }
         }
         found
     };
-    let decisions: Vec<_> = bands.par_iter().flat_map(of_band).collect();
-    let mut outcomes = vec![(false, false); scene.splats.len()];
-    for (number, may_stay, may_drop) in decisions {
-        outcomes[number].0 |= may_stay;
-        outcomes[number].1 |= may_drop;
+    let mut by_centre: BTreeMap<(usize, usize), Outcome> = BTreeMap::new();
+    for (place, outcome) in bands.par_iter().flat_map(of_band).collect::<Vec<_>>() {
+        let merged = by_centre.entry(place).or_default();
+        *merged = merged.or(outcome);
     }
-    let kept = |(splat, (may_stay, may_drop)): (Splat, (bool, bool))| match (splat.back, may_stay, may_drop) {
-        (false, ..) | (true, true, false) => Some(splat),
-        (true, true, true) => Some(Splat { certain: false, ..splat }),
-        (true, false, _) => None,
+    // Dropped in all the pixels where the centre may be, and in any.
+    let mut outcomes = vec![Outcome { possibly: false, certainly: true }; scene.splats.len()];
+    for ((number, _), outcome) in by_centre {
+        outcomes[number].possibly |= outcome.possibly;
+        outcomes[number].certainly &= outcome.certainly;
+    }
+    let kept = |(splat, dropped): (Splat, Outcome)| match dropped {
+        _ if !splat.back => Some(splat),
+        Outcome { certainly: true, .. } => None,
+        Outcome { possibly, .. } => Some(Splat { certain: splat.certain && !possibly, ..splat }),
     };
     ProjectedScene { splats: scene.splats.into_iter().zip(outcomes).filter_map(kept).collect(), ..scene }
+}
+
+/// Whether the surface at the pixel of its centre hides a splat that faces away.
+fn hides(model: &ErrorModel, splat: &Splat, ranges: impl Iterator<Item = DepthRange>) -> Outcome {
+    let (behind, tolerance) = bound(model, splat, 1.0);
+    all(ranges, |range| Outcome {
+        possibly: range.exists() && !range.must_pass(behind, tolerance),
+        certainly: range.exists() && !range.may_pass(behind, tolerance),
+    })
+}
+
+/// The same of the surface at a pixel beside that.
+fn hides_beside(model: &ErrorModel, splat: &Splat, ranges: impl Iterator<Item = DepthRange>) -> Outcome {
+    let [(own, of_own), (before, of_before)] = [0.0, -BEFORE].map(|radii| bound(model, splat, radii));
+    all(ranges, |range| Outcome {
+        possibly: range.exists() && !range.must_pass(own, of_own) && range.may_pass(before, of_before),
+        certainly: range.exists() && !range.may_pass(own, of_own) && range.must_pass(before, of_before),
+    })
+}
+
+/// What holds of some, and of all possible depths of a pixel.
+fn all(ranges: impl Iterator<Item = DepthRange>, outcome: impl Fn(DepthRange) -> Outcome) -> Outcome {
+    ranges.map(outcome).fold(Outcome { possibly: false, certainly: true }, |all, one| Outcome {
+        possibly: all.possibly || one.possibly,
+        certainly: all.certainly && one.certainly,
+    })
+}
+
+/// The rank of the point so many radii behind the centre of a splat, and the error of its depth.
+fn bound(model: &ErrorModel, splat: &Splat, radii: f64) -> (Rank, f64) {
+    let depth = depth_behind(model.projector, splat, radii);
+    let error = SHIFT_ERROR * (1.0 + radii.abs() / f64::from(model.projector.settings.epsilon));
+    let tolerance = (DEPTH_TOLERANCE + error + model.rounding * splat.secant) * depth.abs();
+    (Rank { clipped: false, depth }, tolerance)
 }
 
 /// The splats that face the eye.
@@ -89,15 +149,15 @@ fn fronts(scene: &ProjectedScene) -> ProjectedScene {
     ProjectedScene { splats, moved: None, counts: scene.counts, dual_form: 0 }
 }
 
-/// Depth of the point a radius behind the centre of the ellipse, moved back by ε as depths of visibility are.
-fn depth_behind(projector: &Projector, splat: &Splat) -> f64 {
-    let radii = 1.0 + 1.0 / f64::from(projector.settings.epsilon);
+/// Depth of the point so many radii behind the centre of the ellipse, moved back by ε as depths of visibility are.
+fn depth_behind(projector: &Projector, splat: &Splat, radii: f64) -> f64 {
+    let shifts = 1.0 + radii / f64::from(projector.settings.epsilon);
     let value = splat.plane.dot(glam::DVec3::new(1.0, splat.centre.x, splat.centre.y));
     let depth = if projector.has_inverse_depth() { 1.0 / value } else { value };
     if projector.depth.perspective {
-        depth * (1.0 + radii * (splat.shift - 1.0))
+        depth * (1.0 + shifts * (splat.shift - 1.0))
     } else {
-        depth + radii * splat.shift
+        depth + shifts * splat.shift
     }
 }
 
@@ -113,6 +173,13 @@ fn pixels(at: DVec2, size: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
     all.sort_unstable();
     all.dedup();
     all.into_iter()
+}
+
+/// The pixels left, right, above and below.
+fn beside([x, y]: [u32; 2], size: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
+    let [right, bottom] = size.map(|side| side - 1);
+    [[x.saturating_sub(1), y], [(x + 1).min(right), y], [x, y.saturating_sub(1)], [x, (y + 1).min(bottom)]]
+        .into_iter()
 }
 
 fn index([x, y]: [u32; 2], size: [u32; 2]) -> usize {
