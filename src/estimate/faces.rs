@@ -110,3 +110,24 @@ fn reaches(surfels: &Surfels, triangles: &[[u32; 3]]) -> Vec<f64> {
     }
     reaches
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Required radius of the disc that faces z at the middle of four unit triangles, one of whose corners is `depth` behind.
+    fn reach_beside_leap(depth: f32) -> f64 {
+        let around = [Vec3::X, Vec3::Y, Vec3::NEG_X, Vec3::new(0.0, -1.0, -depth)];
+        let positions: Vec<Vec3> = std::iter::once(Vec3::ZERO).chain(around).collect();
+        let surfels = Surfels { normals: vec![Vec3::Z; positions.len()], positions, ..Surfels::default() };
+        reaches(&surfels, &[[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]])[0]
+    }
+
+    #[test]
+    fn steep_triangles_are_covered_as_they_are_projected() {
+        let flat = reach_beside_leap(0.0);
+        assert!((flat - 0.5f64.sqrt()).abs() < 1e-12, "{flat}");
+        // 50° and 80°.
+        assert!(reach_beside_leap(1.2) > 1.1 * flat && reach_beside_leap(5.7) == flat);
+    }
+}
