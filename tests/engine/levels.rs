@@ -211,25 +211,22 @@ fn a_level_of_two_pixels_loses_half_a_decibel_at_most() {
         truth::render(subject.surface().unwrap(), &camera, &settings, size, &exact, &()).unwrap().picture;
     println!("{points} points at {}²: dB against the exact picture, splats per px", size[0]);
     println!("| method | all points | 1 px | 2 px | 4 px |");
-    // Confetti's picture of all points is the sharpest, and at 2 px it loses more of that, but stays better than EWA's.
+    // Most that 1 and 2 px lose to all points, and that 2 px lose to EWA's. Confetti's picture of all points is the sharpest: at 2 px it loses more
+    // of that, but is nearer to the exact one than EWA's.
     let losses = [
-        (perspective_ewa::METHOD, [0.5, 0.5]),
-        (confetti::METHOD, [0.5, 0.7]),
-        (pull_push::METHOD, [0.0, 0.0]),
+        (perspective_ewa::METHOD, [0.5, 0.5], 0.0),
+        (confetti::METHOD, [0.5, f64::INFINITY], 0.0),
+        (pull_push::METHOD, [0.0, 0.0], 2.0),
     ];
-    for (method, most) in losses {
+    let mut of_ewa = None;
+    for (method, most, most_to_ewa) in losses {
         let of = |lod| quality(&device, &levels, &method, lod, &exact, &camera);
         let [all, one, two, four] = [0.0, 1.0, 2.0, 4.0].map(of);
         let cell = |(db, splats): (f64, f64)| format!("{db:.2} ({splats:.2})");
         println!("| {} | {} |", method.name, [all, one, two, four].map(cell).join(" | "));
-        assert!(
-            one.0 >= all.0 - most[0] && two.0 >= all.0 - most[1],
-            "{}: {} {} {}",
-            method.name,
-            all.0,
-            one.0,
-            two.0
-        );
+        let of_ewa = *of_ewa.get_or_insert(two.0);
+        let is_near = one.0 >= all.0 - most[0] && two.0 >= all.0 - most[1] && two.0 >= of_ewa - most_to_ewa;
+        assert!(is_near, "{}: {} {} {}, EWA's {of_ewa}", method.name, all.0, one.0, two.0);
         assert!(two.1 < 2.0 && two.1 < 0.2 * all.1, "{}: {} {}", method.name, all.1, two.1);
     }
     assert_silent(&device);
