@@ -78,29 +78,30 @@ bool has_surfel(uint entry) {
 
 #endif
 
-// Radii before a centre within which a surface beside it hides it: towards outlines a surface is steep.
+// How far before a centre a surface beside it hides it, in radii or, if these are less, in widths of a pixel: towards outlines a surface is steep.
 const float BEFORE = 8.0;
 const ivec2 BESIDE[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
 
-// κ of the point so many radii behind the centre, moved back by ε as those of visibility are.
-float key_behind(Splat splat, float radii) {
+// κ of the point behind the centre by `offset`, relative to the distance in perspective, else in κ; moved back by ε as those of visibility are.
+float key_behind(Splat splat, float shift, float offset) {
     float key = plane_at(splat.plane_hi, splat.plane_lo, splat.offset);
 #ifdef TILES
     if (has_linear_depth()) key = frame.near / key;
 #else
     if (has_linear_depth()) key = view.near / key;
 #endif
-    // The splat's ε is frame.epsilon radii.
-    float shifts = 1.0 + radii / frame.epsilon;
     // At the eye, and behind it, κ is beyond all.
-    return PERSPECTIVE ? key / max(1.0 + shifts * (1.0 / abs(splat.epsilon) - 1.0), 1e-6) : key - shifts * abs(splat.epsilon);
+    return PERSPECTIVE ? key / max(1.0 + shift + offset, 1e-6) : key - shift - offset;
 }
 
 // Whether a surface that faces the eye hides the centre, or is where the surface goes on past an outline: beside the centre, and a little before it.
 bool is_hidden(Splat splat) {
+    // ε, frame.epsilon radii, and a radius.
+    float shift = PERSPECTIVE ? 1.0 / abs(splat.epsilon) - 1.0 : abs(splat.epsilon), radius = shift / frame.epsilon;
     ivec2 centre = ivec2(anchor_of(splat)), last = ivec2(frame.viewport) - 1;
-    if (front_key(uvec2(centre)) >= key_behind(splat, 1.0)) return true;
-    float own = key_behind(splat, 0.0), before = key_behind(splat, -BEFORE);
+    if (front_key(uvec2(centre)) >= key_behind(splat, shift, radius)) return true;
+    float width = PERSPECTIVE ? frame.pixel_width : frame.key_slope * frame.pixel_width;
+    float own = key_behind(splat, shift, 0.0), before = key_behind(splat, shift, -BEFORE * max(radius, width));
     for (int k = 0; k < 4; k++) {
         float key = front_key(uvec2(clamp(centre + BESIDE[k], ivec2(0), last)));
         if (key >= own && key <= before) return true;

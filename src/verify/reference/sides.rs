@@ -16,7 +16,8 @@ const CENTRE_TOLERANCE: f64 = 1e-3;
 /// Rounding error of ε / z in float32, as it is recovered from `1 / (1 + ε / z)`.
 const SHIFT_ERROR: f64 = 4.0 / (1 << 24) as f64;
 
-/// Radii before a centre within which a surface beside it hides it: towards outlines a surface is steep.
+/// How far before a centre a surface beside it hides it, in radii or, if these are less, in widths of a pixel: towards
+/// outlines a surface is steep.
 const BEFORE: f64 = 8.0;
 
 /// The scene without the splats that are dropped.
@@ -33,10 +34,10 @@ pub(super) fn pass(projector: &Projector, scene: ProjectedScene, size: [u32; 2])
         !front.clipped && (least..=most).contains(&front.depth)
     };
     let is_dropped = |splat: &Splat| {
-        let depth = |radii| depth_behind(projector, splat, radii);
+        let depth = |offset| depth_behind(projector, splat, offset);
         let centre = pixel(splat.centre, size);
-        is_within(centre, f64::NEG_INFINITY, depth(1.0))
-            || beside(centre, size).any(|at| is_within(at, depth(-BEFORE), depth(0.0)))
+        is_within(centre, f64::NEG_INFINITY, depth(radius(projector, splat)))
+            || beside(centre, size).any(|at| is_within(at, depth(-before(projector, splat)), depth(0.0)))
     };
     let all = scene.splats.len();
     let splats: Vec<_> =
@@ -111,7 +112,7 @@ pub(super) fn possible(model: &ErrorModel, scene: ProjectedScene, size: [u32; 2]
 
 /// Whether the surface at the pixel of its centre hides a splat that faces away.
 fn hides(model: &ErrorModel, splat: &Splat, ranges: impl Iterator<Item = DepthRange>) -> Outcome {
-    let (behind, tolerance) = bound(model, splat, 1.0);
+    let (behind, tolerance) = bound(model, splat, radius(model.projector, splat));
     all(ranges, |range| Outcome {
         possibly: range.exists() && !range.must_pass(behind, tolerance),
         certainly: range.exists() && !range.may_pass(behind, tolerance),
@@ -120,7 +121,8 @@ fn hides(model: &ErrorModel, splat: &Splat, ranges: impl Iterator<Item = DepthRa
 
 /// The same of the surface at a pixel beside that.
 fn hides_beside(model: &ErrorModel, splat: &Splat, ranges: impl Iterator<Item = DepthRange>) -> Outcome {
-    let [(own, of_own), (before, of_before)] = [0.0, -BEFORE].map(|radii| bound(model, splat, radii));
+    let offsets = [0.0, -before(model.projector, splat)];
+    let [(own, of_own), (before, of_before)] = offsets.map(|offset| bound(model, splat, offset));
     all(ranges, |range| Outcome {
         possibly: range.exists() && !range.must_pass(own, of_own) && range.may_pass(before, of_before),
         certainly: range.exists() && !range.may_pass(own, of_own) && range.must_pass(before, of_before),
@@ -135,10 +137,10 @@ fn all(ranges: impl Iterator<Item = DepthRange>, outcome: impl Fn(DepthRange) ->
     })
 }
 
-/// The rank of the point so many radii behind the centre of a splat, and the error of its depth.
-fn bound(model: &ErrorModel, splat: &Splat, radii: f64) -> (Rank, f64) {
-    let depth = depth_behind(model.projector, splat, radii);
-    let error = SHIFT_ERROR * (1.0 + radii.abs() / f64::from(model.projector.settings.epsilon));
+/// The rank of the point behind the centre of a splat by `offset`, and the error of its depth.
+fn bound(model: &ErrorModel, splat: &Splat, offset: f64) -> (Rank, f64) {
+    let depth = depth_behind(model.projector, splat, offset);
+    let error = SHIFT_ERROR * (1.0 + offset.abs() / shift(model.projector, splat));
     let tolerance = (DEPTH_TOLERANCE + error + model.rounding * splat.secant) * depth.abs();
     (Rank { clipped: false, depth }, tolerance)
 }
@@ -149,16 +151,28 @@ fn fronts(scene: &ProjectedScene) -> ProjectedScene {
     ProjectedScene { splats, moved: None, counts: scene.counts, dual_form: 0 }
 }
 
-/// Depth of the point so many radii behind the centre of the ellipse, moved back by ε as depths of visibility are.
-fn depth_behind(projector: &Projector, splat: &Splat, radii: f64) -> f64 {
-    let shifts = 1.0 + radii / f64::from(projector.settings.epsilon);
+/// Depth of the point behind the centre of the ellipse by `offset`, relative to the distance in perspective; moved back by
+/// ε as depths of visibility are.
+fn depth_behind(projector: &Projector, splat: &Splat, offset: f64) -> f64 {
     let value = splat.plane.dot(glam::DVec3::new(1.0, splat.centre.x, splat.centre.y));
     let depth = if projector.has_inverse_depth() { 1.0 / value } else { value };
-    if projector.depth.perspective {
-        depth * (1.0 + shifts * (splat.shift - 1.0))
-    } else {
-        depth + shifts * splat.shift
-    }
+    let behind = shift(projector, splat) + offset;
+    if projector.depth.perspective { depth * (1.0 + behind) } else { depth + behind }
+}
+
+/// ε, relative to the distance in perspective.
+fn shift(projector: &Projector, splat: &Splat) -> f64 {
+    if projector.depth.perspective { splat.shift - 1.0 } else { splat.shift }
+}
+
+/// The radius, likewise.
+fn radius(projector: &Projector, splat: &Splat) -> f64 {
+    shift(projector, splat) / f64::from(projector.settings.epsilon)
+}
+
+/// How far before the centre a surface beside it hides it, likewise.
+fn before(projector: &Projector, splat: &Splat) -> f64 {
+    BEFORE * radius(projector, splat).max(projector.pixel_width())
 }
 
 /// The pixel of a position, or the nearest one of the picture.
