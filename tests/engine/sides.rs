@@ -7,9 +7,10 @@ use std::sync::Arc;
 use surfel::geometry::{Camera, Surfels};
 use surfel::settings::methods::{Method, perspective_ewa, sprites};
 use surfel::settings::{Alpha, Cull};
+use surfel::verify::reference::{Expected, Tolerance};
 use surfel::verify::scenes;
 use surfel::vk::{Device, DeviceLimits};
-use surfel::{Picture, Rasterizer, RenderOptions, Settings};
+use surfel::{Outputs, Picture, Rasterizer, RenderOptions, Settings};
 
 const SIDE: u32 = 256;
 
@@ -67,12 +68,27 @@ fn closed_surfaces_are_culled_and_open_ones_are_not() {
 #[test]
 fn small_pictures_of_dense_closed_surfaces_are_culled() {
     let Some(device) = device(DeviceLimits::default()) else { return };
-    let closed = scenes::open("scene:bumpy-sphere?points=200000").unwrap();
-    let how = (&perspective_ewa::METHOD, Rasterizer::Compute);
-    let eye = DVec3::new(1.0, 0.8, 2.0);
-    let [back, auto] = pictures(&device, (&closed, 64), eye, how, [Cull::Back, Cull::Auto]);
+    let eye = DVec3::new(1.7, 1.37, 2.73);
+    let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::Y, 0.8, 1.0, 0.1).unwrap();
+    let outputs = Outputs { normal: true, depth: true, id: false };
+    let picture = |points, side, cull| {
+        let surfels = scenes::open(&format!("scene:bumpy-sphere?points={points}")).unwrap();
+        let settings = Settings { cull, pixel_filter: 0.0, ..perspective_ewa::METHOD.settings() };
+        let options = RenderOptions { size: [side; 2], outputs, ..Default::default() };
+        (render(&device, &surfels, &camera, &settings, options), surfels, settings)
+    };
+    let [back, auto] = [Cull::Back, Cull::Auto].map(|cull| picture(400_000, 128, cull).0);
     let culled = different(&auto, &back);
     assert!(2_000 * culled <= covered(&auto), "{culled} px differ from culled back faces");
+    let (picture, surfels, settings) = picture(50_000, 48, Cull::Auto);
+    let expected = Expected::new(&surfels, &camera, picture.size, &settings, &Tolerance::default()).unwrap();
+    let comparison = expected.compare(&picture).unwrap();
+    assert!(
+        comparison.passed(),
+        "{} px differ from the reference: {:?}",
+        comparison.failed,
+        comparison.worst
+    );
     assert_silent(&device);
 }
 
