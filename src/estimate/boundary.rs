@@ -72,7 +72,8 @@ fn clip_of(lines: &[Line], angle: f64, normal: Vec3, on: &dyn Fn(&Line) -> Optio
 /// triangles overlap, seen along the normal.
 fn widest_gap<'a>(ends: &[&'a Line], normal: Vec3) -> Option<(f64, [&'a Line; 2])> {
     let normal = normal.as_dvec3();
-    let [x, y] = [normal.any_orthonormal_vector(), normal.cross(normal.any_orthonormal_vector())];
+    let x = normal.any_orthonormal_vector();
+    let y = normal.cross(x);
     let mut edges: Vec<(f64, bool, &Line)> = ends
         .iter()
         .filter_map(|line| {
@@ -207,13 +208,20 @@ mod tests {
 
     #[test]
     fn where_boundaries_meet_the_widest_gap_is_clipped() {
-        // A square and three around a corner touch there.
+        // Two squares that touch at a corner, with two gaps of 90°.
         let (_, clip) = clipped(sheet(|x, y| (x, y) == (2, 2) || (x, y) == (3, 3)));
         let one_gap = clip(3, 3).unwrap();
         let kept = [[0.3, 0.3], [-0.3, -0.3], [-0.3, 0.3], [0.3, -0.3]]
             .map(|[x, y]| one_gap.keeps(DVec3::new(x, y, 0.0)));
         assert_eq!(kept.iter().filter(|kept| **kept).count(), 3, "{kept:?}");
         assert!(kept[0] && kept[1] && one_gap.concave);
+        // Of the second, half a square: a gap of 45°, and one of 180° above.
+        let (surfels, mut triangles) = sheet(|x, y| (x, y) == (2, 2) || (x, y) == (3, 2));
+        triangles.retain(|corners| *corners != [2 * 7 + 3, 2 * 7 + 4, 3 * 7 + 3]);
+        let (_, clip) = clipped((surfels, triangles));
+        let wide_gap = clip(3, 3).unwrap();
+        let keeps = |x: f64, y: f64| wide_gap.keeps(DVec3::new(x, y, 0.0));
+        assert!(keeps(-0.3, -0.3) && keeps(0.3, -0.3) && !keeps(-0.3, 0.3) && !keeps(0.3, 0.3));
     }
 
     #[test]

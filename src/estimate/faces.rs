@@ -24,7 +24,7 @@ struct Corner {
 }
 
 /// Sets missing normals to the mean normal of the triangles, weighted by their angles, and missing radii to those of discs that cover every
-/// triangle, unless the discs are to be ellipses.
+/// triangle or its projection, unless the discs are to be ellipses.
 pub(super) fn fill(draft: &mut Draft, how: &Estimate) {
     if draft.triangles.is_empty() || !draft.lacks_anything() {
         return;
@@ -100,7 +100,7 @@ fn reaches(surfels: &Surfels, triangles: &[[u32; 3]]) -> Vec<f64> {
         for turn in 0..3 {
             let [p, mut a, mut b] = [0, 1, 2].map(|i| points[(turn + i) % 3]);
             let i = triangle[turn] as usize;
-            let normal = surfels.normals[i].as_dvec3();
+            let normal = surfels.normals[i].as_dvec3().normalize_or_zero();
             (a, b) = (a - p, b - p);
             if a.cross(b).normalize_or_zero().dot(normal).abs() < STEEP {
                 (a, b) = (a - a.dot(normal) * normal, b - b.dot(normal) * normal);

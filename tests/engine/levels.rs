@@ -196,7 +196,7 @@ fn quality(
 }
 
 #[test]
-fn a_level_of_two_pixels_loses_half_a_decibel_at_most() {
+fn a_level_of_two_pixels_is_nearly_as_near_to_the_truth_as_all_points() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let subject = Subject::scene("scene:bumpy-sphere").unwrap();
     let points = if_whole(2_000_000, 200_000);
@@ -215,7 +215,7 @@ fn a_level_of_two_pixels_loses_half_a_decibel_at_most() {
     // of that, but is nearer to the exact one than EWA's.
     let losses = [
         (perspective_ewa::METHOD, [0.5, 0.5], 0.0),
-        (confetti::METHOD, [0.5, f64::INFINITY], 0.0),
+        (confetti::METHOD, [0.5, 0.8], 0.0),
         (pull_push::METHOD, [0.0, 0.0], 2.0),
     ];
     let mut of_ewa = None;
@@ -224,9 +224,10 @@ fn a_level_of_two_pixels_loses_half_a_decibel_at_most() {
         let [all, one, two, four] = [0.0, 1.0, 2.0, 4.0].map(of);
         let cell = |(db, splats): (f64, f64)| format!("{db:.2} ({splats:.2})");
         println!("| {} | {} |", method.name, [all, one, two, four].map(cell).join(" | "));
-        let of_ewa = *of_ewa.get_or_insert(two.0);
-        let is_near = one.0 >= all.0 - most[0] && two.0 >= all.0 - most[1] && two.0 >= of_ewa - most_to_ewa;
-        assert!(is_near, "{}: {} {} {}, EWA's {of_ewa}", method.name, all.0, one.0, two.0);
+        // The first.
+        let ewa = *of_ewa.get_or_insert(two.0);
+        let is_near = one.0 >= all.0 - most[0] && two.0 >= all.0 - most[1] && two.0 >= ewa - most_to_ewa;
+        assert!(is_near, "{}: {} {} {}, EWA's {ewa}", method.name, all.0, one.0, two.0);
         assert!(two.1 < 2.0 && two.1 < 0.2 * all.1, "{}: {} {}", method.name, all.1, two.1);
     }
     assert_silent(&device);

@@ -91,15 +91,15 @@ fn first_camera(name: &str, subject: &Subject) -> Camera {
 fn closed_scans_have_no_specks() {
     let Some(device) = gpu::device(DeviceLimits::default()) else { return };
     let models = [
-        ("bun_zipper", "stanford/bunny/bun_zipper.ply", "stanford/bunny/bun_zipper.ply", 0.0002),
-        ("igea", "classic/igea.ply", "classic/igea.ply", 0.0002),
+        ("bun_zipper", "stanford/bunny/bun_zipper.ply", "stanford/bunny/bun_zipper.ply", 0.0001),
+        ("igea", "classic/igea.ply", "classic/igea.ply", 0.0001),
         (
             "dragon_vrip_res2",
             "stanford/dragon/dragon_vrip_res2.ply",
             "stanford/dragon/dragon_vrip.ply",
-            0.0015,
+            0.0006,
         ),
-        ("buddha_50k", "stanford/buddha/buddha_50k.ply", "stanford/buddha/buddha_50k.ply", 0.0015),
+        ("buddha_50k", "stanford/buddha/buddha_50k.ply", "stanford/buddha/buddha_50k.ply", 0.001),
     ];
     let mut failed = Vec::new();
     for (name, points, surface, most) in &models[..if_whole(models.len(), 1)] {

@@ -112,8 +112,8 @@ pub(super) fn possible(model: &ErrorModel, scene: ProjectedScene, size: [u32; 2]
 
 /// Whether the surface at the pixel of its centre hides a splat that faces away.
 fn hides(model: &ErrorModel, splat: &Splat, ranges: impl Iterator<Item = DepthRange>) -> Outcome {
-    let (behind, tolerance) = bound(model, splat, radius(model.projector, splat));
-    all(ranges, |range| Outcome {
+    let (behind, tolerance) = bound(model, splat, [radius(model.projector, splat), 1.0]);
+    of_all(ranges, |range| Outcome {
         possibly: range.exists() && !range.must_pass(behind, tolerance),
         certainly: range.exists() && !range.may_pass(behind, tolerance),
     })
@@ -121,27 +121,33 @@ fn hides(model: &ErrorModel, splat: &Splat, ranges: impl Iterator<Item = DepthRa
 
 /// The same of the surface at a pixel beside that.
 fn hides_beside(model: &ErrorModel, splat: &Splat, ranges: impl Iterator<Item = DepthRange>) -> Outcome {
-    let offsets = [0.0, -before(model.projector, splat)];
-    let [(own, of_own), (before, of_before)] = offsets.map(|offset| bound(model, splat, offset));
-    all(ranges, |range| Outcome {
-        possibly: range.exists() && !range.must_pass(own, of_own) && range.may_pass(before, of_before),
-        certainly: range.exists() && !range.may_pass(own, of_own) && range.must_pass(before, of_before),
+    let (own, tolerance) = bound(model, splat, [0.0, 0.0]);
+    let (farthest, tolerance_of_farthest) = bound(model, splat, [-before(model.projector, splat), BEFORE]);
+    of_all(ranges, |range| Outcome {
+        possibly: range.exists()
+            && !range.must_pass(own, tolerance)
+            && range.may_pass(farthest, tolerance_of_farthest),
+        certainly: range.exists()
+            && !range.may_pass(own, tolerance)
+            && range.must_pass(farthest, tolerance_of_farthest),
     })
 }
 
 /// What holds of some, and of all possible depths of a pixel.
-fn all(ranges: impl Iterator<Item = DepthRange>, outcome: impl Fn(DepthRange) -> Outcome) -> Outcome {
+fn of_all(ranges: impl Iterator<Item = DepthRange>, outcome: impl Fn(DepthRange) -> Outcome) -> Outcome {
     ranges.map(outcome).fold(Outcome { possibly: false, certainly: true }, |all, one| Outcome {
         possibly: all.possibly || one.possibly,
         certainly: all.certainly && one.certainly,
     })
 }
 
-/// The rank of the point behind the centre of a splat by `offset`, and the error of its depth.
-fn bound(model: &ErrorModel, splat: &Splat, offset: f64) -> (Rank, f64) {
-    let depth = depth_behind(model.projector, splat, offset);
-    let error = SHIFT_ERROR * (1.0 + offset.abs() / shift(model.projector, splat));
-    let tolerance = (DEPTH_TOLERANCE + error + model.rounding * splat.secant) * depth.abs();
+/// The rank of the point behind the centre of a splat by an offset, of at most so many radii or pixels' widths, and the error
+/// of its depth.
+fn bound(model: &ErrorModel, splat: &Splat, [offset, units]: [f64; 2]) -> (Rank, f64) {
+    let [depth, of_centre] = [offset, 0.0].map(|offset| depth_behind(model.projector, splat, offset));
+    let error = SHIFT_ERROR * (1.0 + units / f64::from(model.projector.settings.epsilon));
+    let tolerance =
+        (DEPTH_TOLERANCE + error + model.rounding * splat.secant) * depth.abs().max(of_centre.abs());
     (Rank { clipped: false, depth }, tolerance)
 }
 
