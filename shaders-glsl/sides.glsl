@@ -78,35 +78,53 @@ bool has_surfel(uint entry) {
 
 #endif
 
-// How far before a centre a surface beside it hides it, in radii or, if these are less, in widths of a pixel: towards outlines a surface is steep.
-const float BEFORE = 8.0;
+// A surface that faces the eye before a centre is the disc's own, which has turned round at an outline, if it is so far before the centre at most,
+// in radii or, if these are less, in widths of a pixel; or if the disc is steep: its angle to the screen has this tangent, of 76°. A disc that reaches
+// an outline of its surface, with a radius of curvature of R radii, is √(8 R) radii behind it and has the tangent √(R / 2) at least.
+const float BEFORE_CENTRE = 16.0;
+const float STEEP = 4.0;
+// The same beside the centre.
+const float BEFORE_BESIDE = 8.0;
 const ivec2 BESIDE[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
 
 // κ of the point behind the centre by `offset`, relative to the distance in perspective, else in κ; moved back by ε as those of visibility are.
-float key_behind(Splat splat, float shift, float offset) {
-    float key = plane_at(splat.plane_hi, splat.plane_lo, splat.offset);
+float key_behind(float key, float shift, float offset) {
+    // At the eye, and behind it, κ is beyond all.
+    return PERSPECTIVE ? key / max(1.0 + shift + offset, 1e-6) : key - shift - offset;
+}
+
+// κ of the surface that faces the eye so many pixels from a centre.
+float key_at(ivec2 centre, ivec2 offset) {
+    return front_key(uvec2(clamp(centre + offset, ivec2(0), ivec2(frame.viewport) - 1)));
+}
+
+// Whether a surface that faces the eye hides a splat, or is its own beyond an outline. One that is far before it, and hides it in part, is not: the
+// rest of the splat is seen past that surface's end.
+bool is_hidden(Splat splat) {
+    float plane = plane_at(splat.plane_hi, splat.plane_lo, splat.offset), key = plane;
 #ifdef TILES
     if (has_linear_depth()) key = frame.near / key;
 #else
     if (has_linear_depth()) key = view.near / key;
 #endif
-    // At the eye, and behind it, κ is beyond all.
-    return PERSPECTIVE ? key / max(1.0 + shift + offset, 1e-6) : key - shift - offset;
-}
-
-// Whether a surface that faces the eye hides the centre, or is where the surface goes on past an outline: beside the centre, and a little before it.
-bool is_hidden(Splat splat) {
-    // ε, frame.epsilon radii, and a radius.
+    // ε, frame.epsilon radii, a radius, and the width of a pixel.
     float shift = PERSPECTIVE ? 1.0 / abs(splat.epsilon) - 1.0 : abs(splat.epsilon), radius = shift / frame.epsilon;
-    ivec2 centre = ivec2(anchor_of(splat)), last = ivec2(frame.viewport) - 1;
-    if (front_key(uvec2(centre)) >= key_behind(splat, shift, radius)) return true;
     float width = PERSPECTIVE ? frame.pixel_width : frame.key_slope * frame.pixel_width;
-    float own = key_behind(splat, shift, 0.0), before = key_behind(splat, shift, -BEFORE * max(radius, width));
+    float own = key_behind(key, shift, 0.0), unit = max(radius, width);
+    ivec2 centre = ivec2(anchor_of(splat));
     for (int k = 0; k < 4; k++) {
-        float key = front_key(uvec2(clamp(centre + BESIDE[k], ivec2(0), last)));
-        if (key >= own && key <= before) return true;
+        float beside = key_at(centre, BESIDE[k]);
+        if (beside >= own && beside <= key_behind(key, shift, -BEFORE_BESIDE * unit)) return true;
     }
-    return false;
+    float at_centre = key_at(centre, ivec2(0));
+    if (at_centre < key_behind(key, shift, radius)) return false;
+    float slope = length(splat.plane_hi.yz) / (PERSPECTIVE ? plane : 1.0);
+    if (at_centre <= key_behind(key, shift, -BEFORE_CENTRE * unit) || slope > STEEP * width) return true;
+    int reach = int(min(radius / width, 1e6)) + 2;
+    for (int k = 0; k < 4; k++) {
+        if (key_at(centre, reach * BESIDE[k]) < own) return false;
+    }
+    return true;
 }
 
 void main() {

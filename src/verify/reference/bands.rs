@@ -9,7 +9,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 /// Rows of a band.
-const ROWS: u32 = 8;
+pub(super) const ROWS: u32 = 8;
 
 /// The bands of a picture.
 pub(super) struct Bands {

@@ -1,24 +1,31 @@
 //! Pass `sides`: drops splats that face away where a surface that faces the eye hides them, lies at most a radius behind
 //! their centres, or is beside and a little before these.
 
-use super::bands::{Band, Bands};
+use super::bands::{Bands, ROWS};
 use super::depth_range::{DepthRange, DepthRanges};
 use super::error_model::{DEPTH_TOLERANCE, ErrorModel};
 use super::projected_scene::ProjectedScene;
 use super::rank::Rank;
 use super::{Projector, Splat, visibility};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 
 /// Rounding error of the centre on the screen in float32, px.
 const CENTRE_TOLERANCE: f64 = 1e-3;
 /// Rounding error of ε / z in float32, as it is recovered from `1 / (1 + ε / z)`.
 const SHIFT_ERROR: f64 = 4.0 / (1 << 24) as f64;
 
-/// How far before a centre a surface beside it hides it, in radii or, if these are less, in widths of a pixel: towards
-/// outlines a surface is steep.
-const BEFORE: f64 = 8.0;
+/// A surface that faces the eye before a centre is the disc's own, which has turned round at an outline, if it is so far
+/// before the centre at most, in radii or, if these are less, in widths of a pixel; or if the disc is [`STEEP`]. A disc that
+/// reaches an outline of its surface, with a radius of curvature of R radii, is √(8 R) radii behind it and has the tangent
+/// √(R / 2) at least.
+const BEFORE_CENTRE: f64 = 16.0;
+/// The same beside the centre.
+const BEFORE_BESIDE: f64 = 8.0;
+/// Tangent of the angle to the screen from which a disc is steep: 76°.
+const STEEP: f64 = 4.0;
+/// Relative rounding error of that tangent, and of a radius in widths of a pixel.
+const STEEP_ERROR: f64 = 1e-4;
 
 /// The scene without the splats that are dropped.
 pub(super) fn pass(projector: &Projector, scene: ProjectedScene, size: [u32; 2]) -> ProjectedScene {
@@ -35,9 +42,17 @@ pub(super) fn pass(projector: &Projector, scene: ProjectedScene, size: [u32; 2])
     };
     let is_dropped = |splat: &Splat| {
         let depth = |offset| depth_behind(projector, splat, offset);
+        let own = depth(0.0);
+        let before = |units: f64| depth(-units * unit(projector, splat));
+        let behind = depth(radius(projector, splat));
         let centre = pixel(splat.centre, size);
-        is_within(centre, f64::NEG_INFINITY, depth(radius(projector, splat)))
-            || beside(centre, size).any(|at| is_within(at, depth(-before(projector, splat)), depth(0.0)))
+        let reach = radius(projector, splat) / projector.pixel_width();
+        let is_hidden = |at| is_within(at, f64::NEG_INFINITY, own);
+        around(centre, 1, size).any(|at| is_within(at, before(BEFORE_BESIDE), own))
+            || is_within(centre, f64::NEG_INFINITY, behind)
+                && (is_within(centre, before(BEFORE_CENTRE), behind)
+                    || steepness(projector, splat) > STEEP
+                    || around(centre, ends(reach), size).all(is_hidden))
     };
     let all = scene.splats.len();
     let splats: Vec<_> =
@@ -49,101 +64,119 @@ pub(super) fn pass(projector: &Projector, scene: ProjectedScene, size: [u32; 2])
 }
 
 /// Whether something holds, by the error model.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 struct Outcome {
     possibly: bool,
     certainly: bool,
 }
 
 impl Outcome {
+    const NO: Self = Self { possibly: false, certainly: false };
+    const YES: Self = Self { possibly: true, certainly: true };
+
     fn or(self, other: Self) -> Self {
         Self { possibly: self.possibly || other.possibly, certainly: self.certainly || other.certainly }
+    }
+
+    fn and(self, other: Self) -> Self {
+        Self { possibly: self.possibly && other.possibly, certainly: self.certainly && other.certainly }
     }
 }
 
 /// The scene without the splats that are certainly dropped; those that rounding may drop are not
 /// [certain](Splat::certain).
 pub(super) fn possible(model: &ErrorModel, scene: ProjectedScene, size: [u32; 2]) -> ProjectedScene {
-    let projector = model.projector;
-    if !projector.settings.finds_sides() {
+    if !model.projector.settings.finds_sides() {
         return scene;
     }
     let fronts = fronts(&scene);
-    let bands = Bands::new(projector, &fronts, size);
-    // By splat and pixel in which its centre may be: whether the splat is dropped, by what is seen in the pixels of a band.
-    let of_band = |band: Band<'_>| {
-        let ranges = DepthRanges::new(model, &fronts, &band);
-        let first = (band.first_row * band.width) as usize;
-        let of_pixel = |at: [u32; 2]| {
-            let inside = index(at, size).checked_sub(first).filter(|pixel| *pixel < band.len());
-            inside.map(|pixel| ranges.of(pixel))
-        };
-        let mut found = Vec::new();
-        for (number, splat) in scene.splats.iter().enumerate().filter(|(_, splat)| splat.back) {
-            for centre in pixels(splat.centre, size) {
-                let of_centre = of_pixel(centre).map(|ranges| hides(model, splat, ranges));
-                let around = beside(centre, size).filter_map(of_pixel);
-                let of_others = around.map(|ranges| hides_beside(model, splat, ranges));
-                if let Some(outcome) = of_centre.into_iter().chain(of_others).reduce(Outcome::or) {
-                    found.push(((number, index(centre, size)), outcome));
-                }
-            }
+    let bands = Bands::new(model.projector, &fronts, size);
+    let seen = Fronts {
+        model,
+        size,
+        bands: bands.par_iter().map(|band| DepthRanges::new(model, &fronts, &band)).collect(),
+    };
+    let kept = |splat: Splat| {
+        if !splat.back {
+            return Some(splat);
         }
-        found
+        match seen.drop(&splat) {
+            Outcome { certainly: true, .. } => None,
+            Outcome { possibly, .. } => Some(Splat { certain: splat.certain && !possibly, ..splat }),
+        }
     };
-    let mut by_centre: BTreeMap<(usize, usize), Outcome> = BTreeMap::new();
-    for (place, outcome) in bands.par_iter().flat_map(of_band).collect::<Vec<_>>() {
-        let merged = by_centre.entry(place).or_default();
-        *merged = merged.or(outcome);
+    ProjectedScene { splats: scene.splats.into_par_iter().filter_map(kept).collect(), ..scene }
+}
+
+/// The possible depths of the surface that faces the eye.
+struct Fronts<'a> {
+    model: &'a ErrorModel<'a>,
+    size: [u32; 2],
+    bands: Vec<DepthRanges>,
+}
+
+impl Fronts<'_> {
+    /// Whether a splat that faces away is dropped: in all the pixels where its centre may be, and in any.
+    fn drop(&self, splat: &Splat) -> Outcome {
+        let projector = self.model.projector;
+        let reach = radius(projector, splat) / projector.pixel_width();
+        let least = ends(reach * (1.0 - STEEP_ERROR));
+        let most = ends(reach * (1.0 + STEEP_ERROR));
+        let each = pixels(splat.centre, self.size)
+            .flat_map(|centre| [least, most].map(|reach| self.drop_at(splat, centre, reach)));
+        each.fold(Outcome { possibly: false, certainly: true }, |all, one| Outcome {
+            possibly: all.possibly || one.possibly,
+            certainly: all.certainly && one.certainly,
+        })
     }
-    // Dropped in all the pixels where the centre may be, and in any.
-    let mut outcomes = vec![Outcome { possibly: false, certainly: true }; scene.splats.len()];
-    for ((number, _), outcome) in by_centre {
-        outcomes[number].possibly |= outcome.possibly;
-        outcomes[number].certainly &= outcome.certainly;
+
+    /// Whether it is dropped if its centre is in this pixel.
+    fn drop_at(&self, splat: &Splat, centre: [u32; 2], reach: u32) -> Outcome {
+        let projector = self.model.projector;
+        let own = bound(self.model, splat, [0.0, 0.0]);
+        let before = |units: f64| bound(self.model, splat, [-units * unit(projector, splat), units]);
+        let behind = bound(self.model, splat, [radius(projector, splat), 1.0]);
+        let slope = steepness(projector, splat);
+        let steep = Outcome {
+            possibly: slope > STEEP * (1.0 - STEEP_ERROR),
+            certainly: slope > STEEP * (1.0 + STEEP_ERROR),
+        };
+        let near =
+            around(centre, 1, self.size).map(|at| self.is_within(at, Some(before(BEFORE_BESIDE)), own));
+        let near = near.fold(Outcome::NO, Outcome::or);
+        let hidden = around(centre, reach, self.size).map(|at| self.is_within(at, None, own));
+        let hidden = hidden.fold(Outcome::YES, Outcome::and);
+        let close = self.is_within(centre, Some(before(BEFORE_CENTRE)), behind);
+        near.or(self.is_within(centre, None, behind).and(close.or(steep).or(hidden)))
     }
-    let kept = |(splat, dropped): (Splat, Outcome)| match dropped {
-        _ if !splat.back => Some(splat),
-        Outcome { certainly: true, .. } => None,
-        Outcome { possibly, .. } => Some(Splat { certain: splat.certain && !possibly, ..splat }),
-    };
-    ProjectedScene { splats: scene.splats.into_iter().zip(outcomes).filter_map(kept).collect(), ..scene }
+
+    /// Whether the surface at a pixel is at most as far as one bound, and at least as far as another.
+    fn is_within(&self, at: [u32; 2], least: Option<Bound>, (most, tolerance): Bound) -> Outcome {
+        let ranges = self.bands[(at[1] / ROWS) as usize].of(index([at[0], at[1] % ROWS], self.size));
+        let of_range = |range: DepthRange| {
+            let nearer = Outcome {
+                possibly: range.exists() && !range.must_pass(most, tolerance),
+                certainly: range.exists() && !range.may_pass(most, tolerance),
+            };
+            let farther = least.map_or(Outcome::YES, |(least, tolerance)| Outcome {
+                possibly: range.may_pass(least, tolerance),
+                certainly: range.must_pass(least, tolerance),
+            });
+            nearer.and(farther)
+        };
+        ranges.map(of_range).fold(Outcome { possibly: false, certainly: true }, |all, one| Outcome {
+            possibly: all.possibly || one.possibly,
+            certainly: all.certainly && one.certainly,
+        })
+    }
 }
 
-/// Whether the surface at the pixel of its centre hides a splat that faces away.
-fn hides(model: &ErrorModel, splat: &Splat, ranges: impl Iterator<Item = DepthRange>) -> Outcome {
-    let (behind, tolerance) = bound(model, splat, [radius(model.projector, splat), 1.0]);
-    of_all(ranges, |range| Outcome {
-        possibly: range.exists() && !range.must_pass(behind, tolerance),
-        certainly: range.exists() && !range.may_pass(behind, tolerance),
-    })
-}
-
-/// The same of the surface at a pixel beside that.
-fn hides_beside(model: &ErrorModel, splat: &Splat, ranges: impl Iterator<Item = DepthRange>) -> Outcome {
-    let (own, tolerance) = bound(model, splat, [0.0, 0.0]);
-    let (farthest, tolerance_of_farthest) = bound(model, splat, [-before(model.projector, splat), BEFORE]);
-    of_all(ranges, |range| Outcome {
-        possibly: range.exists()
-            && !range.must_pass(own, tolerance)
-            && range.may_pass(farthest, tolerance_of_farthest),
-        certainly: range.exists()
-            && !range.may_pass(own, tolerance)
-            && range.must_pass(farthest, tolerance_of_farthest),
-    })
-}
-
-/// What holds of some, and of all possible depths of a pixel.
-fn of_all(ranges: impl Iterator<Item = DepthRange>, outcome: impl Fn(DepthRange) -> Outcome) -> Outcome {
-    ranges.map(outcome).fold(Outcome { possibly: false, certainly: true }, |all, one| Outcome {
-        possibly: all.possibly || one.possibly,
-        certainly: all.certainly && one.certainly,
-    })
-}
+/// A rank, and the error of its depth.
+type Bound = (Rank, f64);
 
 /// The rank of the point behind the centre of a splat by an offset, of at most so many radii or pixels' widths, and the error
 /// of its depth.
-fn bound(model: &ErrorModel, splat: &Splat, [offset, units]: [f64; 2]) -> (Rank, f64) {
+fn bound(model: &ErrorModel, splat: &Splat, [offset, units]: [f64; 2]) -> Bound {
     let [depth, of_centre] = [offset, 0.0].map(|offset| depth_behind(model.projector, splat, offset));
     let error = SHIFT_ERROR * (1.0 + units / f64::from(model.projector.settings.epsilon));
     let tolerance =
@@ -160,7 +193,7 @@ fn fronts(scene: &ProjectedScene) -> ProjectedScene {
 /// Depth of the point behind the centre of the ellipse by `offset`, relative to the distance in perspective; moved back by
 /// ε as depths of visibility are.
 fn depth_behind(projector: &Projector, splat: &Splat, offset: f64) -> f64 {
-    let value = splat.plane.dot(glam::DVec3::new(1.0, splat.centre.x, splat.centre.y));
+    let value = splat.plane.dot(DVec3::new(1.0, splat.centre.x, splat.centre.y));
     let depth = if projector.has_inverse_depth() { 1.0 / value } else { value };
     let behind = shift(projector, splat) + offset;
     if projector.depth.perspective { depth * (1.0 + behind) } else { depth + behind }
@@ -176,9 +209,21 @@ fn radius(projector: &Projector, splat: &Splat) -> f64 {
     shift(projector, splat) / f64::from(projector.settings.epsilon)
 }
 
-/// How far before the centre a surface beside it hides it, likewise.
-fn before(projector: &Projector, splat: &Splat) -> f64 {
-    BEFORE * radius(projector, splat).max(projector.pixel_width())
+/// The radius or, if that is less, the width of a pixel, likewise.
+fn unit(projector: &Projector, splat: &Splat) -> f64 {
+    radius(projector, splat).max(projector.pixel_width())
+}
+
+/// Tangent of the angle between a splat's plane and the screen.
+fn steepness(projector: &Projector, splat: &Splat) -> f64 {
+    let value = splat.plane.dot(DVec3::new(1.0, splat.centre.x, splat.centre.y));
+    let slope = DVec2::new(splat.plane.y, splat.plane.z).length();
+    slope / if projector.depth.perspective { value } else { 1.0 } / projector.pixel_width()
+}
+
+/// Pixels from the centre to beyond the ends of a disc with this radius, px.
+fn ends(radius: f64) -> u32 {
+    radius.min(1e6) as u32 + 2
 }
 
 /// The pixel of a position, or the nearest one of the picture.
@@ -195,11 +240,12 @@ fn pixels(at: DVec2, size: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
     all.into_iter()
 }
 
-/// The pixels left, right, above and below.
-fn beside([x, y]: [u32; 2], size: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
+/// The pixels so far to the left, to the right, above and below, or the last ones of the picture.
+fn around([x, y]: [u32; 2], by: u32, size: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
     let [right, bottom] = size.map(|side| side - 1);
-    [[x.saturating_sub(1), y], [(x + 1).min(right), y], [x, y.saturating_sub(1)], [x, (y + 1).min(bottom)]]
-        .into_iter()
+    let (x_before, x_after) = (x.saturating_sub(by), (x + by).min(right));
+    let (y_before, y_after) = (y.saturating_sub(by), (y + by).min(bottom));
+    [[x_before, y], [x_after, y], [x, y_before], [x, y_after]].into_iter()
 }
 
 fn index([x, y]: [u32; 2], size: [u32; 2]) -> usize {
