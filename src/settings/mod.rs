@@ -300,8 +300,8 @@ pub enum Cull {
     /// Of the surfels whose normals face away, those of the far side of a closed surface are culled.
     ///
     /// These are surfels that a surface which faces the eye hides, or goes on as past an outline: see the guide, Methods, Sides. Culling
-    /// equals `back` on closed surfaces, and leaves open ones whole from behind. Other normals are flipped towards the eye. Pull–push, [`Visibility::Axis`] and
-    /// subpasses of a host draw both sides.
+    /// equals `back` on closed surfaces, and leaves open ones whole from behind. Other normals are flipped towards the eye. Pull–push,
+    /// [`Visibility::Axis`] and subpasses of a host draw both sides.
     Auto,
 }
 
