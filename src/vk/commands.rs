@@ -1,6 +1,7 @@
 //! A command buffer with its pool and fence.
 
 use super::command_pool::CommandPool;
+use super::labels::Labels;
 use super::lock;
 use super::timestamps::Timestamps;
 use super::{Device, PassTime, Recorder};
@@ -59,9 +60,10 @@ impl Commands {
             raw.end_command_buffer(self.cmd).map_err(Error::vulkan("vkEndCommandBuffer"))?;
             {
                 let queue = lock(queue);
+                let _alone = self.device.labels.as_ref().and_then(Labels::lock_if_validated);
                 raw.queue_submit(*queue, &submit, self.fence).map_err(Error::vulkan("vkQueueSubmit"))?;
             }
-            raw.wait_for_fences(&[self.fence], true, u64::MAX).map_err(Error::vulkan("vkWaitForFences"))?;
+            self.device.wait(self.fence)?;
             raw.reset_fences(&[self.fence]).map_err(Error::vulkan("vkResetFences"))
         }
     }

@@ -152,7 +152,7 @@ impl Device {
             .map_err(|error| Error::NoDevice(format!("{}: {error}", description.name)))?;
         let pipeline_cache =
             PipelineCache::load(&instance.raw, physical, &raw, options.pipeline_cache.as_deref())?;
-        let labels = instance.debug_utils.then(|| Labels::new(&instance.raw, &raw));
+        let labels = instance.debug_utils.then(|| Labels::new(&instance.raw, &raw, options.validate));
         log::info!("device: {} ({}, {})", description.name, description.kind, description.driver);
         Ok(Arc::new(Self {
             raw,
@@ -237,8 +237,24 @@ impl Device {
     pub fn wait_idle(&self) -> Result<()> {
         let (queue, _) = self.queue()?;
         let _locked = lock(queue);
+        let _alone = self.labels.as_ref().and_then(Labels::lock_if_validated);
         // SAFETY: the device's only queue is locked.
         unsafe { self.raw.device_wait_idle() }.map_err(Error::vulkan("vkDeviceWaitIdle"))
+    }
+
+    /// Waits for a fence.
+    ///
+    /// # Safety
+    /// The fence is of the device, and submitted or signalled.
+    pub(super) unsafe fn wait(&self, fence: vk::Fence) -> Result<()> {
+        // SAFETY: by the caller.
+        let waited = unsafe {
+            match &self.labels {
+                Some(labels) => labels.wait(&self.raw, fence),
+                None => self.raw.wait_for_fences(&[fence], true, u64::MAX),
+            }
+        };
+        waited.map_err(Error::vulkan("vkWaitForFences"))
     }
 
     /// Features of `format` with optimal tiling.

@@ -87,7 +87,7 @@ impl Device {
             memory: ManuallyDrop::new(memory),
             pipeline_cache: ManuallyDrop::new(pipeline_cache),
             pipelines: PipelinePool::default(),
-            labels: external.labels.then(|| Labels::new(instance, device)),
+            labels: external.labels.then(|| Labels::new(instance, device, false)),
             history: History::default(),
             descriptor_pools: DescriptorPools::default(),
             set_layouts: SetLayouts::default(),

@@ -4,23 +4,53 @@ use super::lock;
 use ash::{ext::debug_utils, vk};
 use std::ffi::{CStr, CString};
 use std::sync::{Mutex, MutexGuard};
+use std::time::Duration;
 
 /// The functions of VK_EXT_debug_utils of a device.
 pub(super) struct Labels {
     functions: debug_utils::Device,
     /// Validation layers (1.3.239, for one) keep the labels of all command buffers in one table, and remove a destroyed command buffer's
-    /// without locking it. What looks into the table must not run meanwhile, although Vulkan asks for no synchronization of different pools.
+    /// without locking it: when its pool is destroyed, and once more when nothing refers to it, which may be the end of any thread's wait. What
+    /// looks into the table must not run meanwhile, although Vulkan asks for no synchronization of different pools.
     table: Mutex<()>,
+    /// Whether the validation layers are there.
+    validated: bool,
 }
 
+/// How long a wait under validation lets others record before it looks again.
+const PAUSE: Duration = Duration::from_micros(50);
+
 impl Labels {
-    pub(super) fn new(instance: &ash::Instance, device: &ash::Device) -> Self {
-        Self { functions: debug_utils::Device::new(instance, device), table: Mutex::new(()) }
+    pub(super) fn new(instance: &ash::Instance, device: &ash::Device, validated: bool) -> Self {
+        Self { functions: debug_utils::Device::new(instance, device), table: Mutex::new(()), validated }
     }
 
     /// Held while command buffers are begun or destroyed.
     pub(super) fn lock(&self) -> MutexGuard<'_, ()> {
         lock(&self.table)
+    }
+
+    /// The same for what waits or submits, which concerns the validation layers alone.
+    pub(super) fn lock_if_validated(&self) -> Option<MutexGuard<'_, ()>> {
+        self.validated.then(|| self.lock())
+    }
+
+    /// Waits for a fence: under validation without keeping others from recording.
+    ///
+    /// # Safety
+    /// The fence is of the device, and submitted or signalled.
+    pub(super) unsafe fn wait(&self, device: &ash::Device, fence: vk::Fence) -> Result<(), vk::Result> {
+        let timeout = if self.validated { 0 } else { u64::MAX };
+        loop {
+            let alone = self.lock_if_validated();
+            // SAFETY: by the caller.
+            match unsafe { device.wait_for_fences(&[fence], true, timeout) } {
+                Err(vk::Result::TIMEOUT) => {}
+                done => return done,
+            }
+            drop(alone);
+            std::thread::sleep(PAUSE);
+        }
     }
 
     /// Names an object.

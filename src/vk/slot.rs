@@ -2,6 +2,7 @@
 
 use super::Device;
 use super::command_pool::CommandPool;
+use super::labels::Labels;
 use super::lock;
 use super::presenter::Presented;
 use crate::error::{Error, Result};
@@ -38,8 +39,7 @@ impl Slot {
     /// Waits until the GPU has finished the last frame of this slot.
     pub(super) fn wait(&self) -> Result<()> {
         // SAFETY: the fence is the device's.
-        unsafe { self.device.raw.wait_for_fences(&[self.done], true, u64::MAX) }
-            .map_err(Error::vulkan("vkWaitForFences"))
+        unsafe { self.device.wait(self.done) }
     }
 
     /// Records a frame. After an error of `body`, only the first image transition and `end` remain. The caller has waited for the slot.
@@ -110,6 +110,7 @@ impl Slot {
             .wait_dst_stage_mask(&stages[..waits.as_slice().len()])
             .signal_semaphores(signals.as_slice())];
         let queue = lock(queue);
+        let _alone = self.device.labels.as_ref().and_then(Labels::lock_if_validated);
         // SAFETY: the buffer was recorded whole; the fence was waited for, and the queue is locked.
         unsafe {
             self.device.raw.reset_fences(&[self.done]).map_err(Error::vulkan("vkResetFences"))?;
