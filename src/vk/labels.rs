@@ -17,8 +17,8 @@ pub(super) struct Labels {
     validated: bool,
 }
 
-/// How long a wait under validation lets others record before it looks again.
-const PAUSE: Duration = Duration::from_micros(50);
+/// How long a wait under validation lets others record before it looks again: at first, then each time twice as long, at most.
+const PAUSES: [Duration; 2] = [Duration::from_micros(50), Duration::from_millis(2)];
 
 impl Labels {
     pub(super) fn new(instance: &ash::Instance, device: &ash::Device, validated: bool) -> Self {
@@ -41,6 +41,7 @@ impl Labels {
     /// The fence is of the device, and submitted or signalled.
     pub(super) unsafe fn wait(&self, device: &ash::Device, fence: vk::Fence) -> Result<(), vk::Result> {
         let timeout = if self.validated { 0 } else { u64::MAX };
+        let [mut pause, longest] = PAUSES;
         loop {
             let alone = self.lock_if_validated();
             // SAFETY: by the caller.
@@ -49,7 +50,8 @@ impl Labels {
                 done => return done,
             }
             drop(alone);
-            std::thread::sleep(PAUSE);
+            std::thread::sleep(pause);
+            pause = longest.min(2 * pause);
         }
     }
 
