@@ -215,7 +215,7 @@ fn a_level_of_two_pixels_is_nearly_as_near_to_the_truth_as_all_points() {
     // of that, but is nearer to the exact one than EWA's.
     let losses = [
         (perspective_ewa::METHOD, [0.5, 0.5], 0.0),
-        (confetti::METHOD, [0.5, 0.8], 0.0),
+        (confetti::METHOD, [0.5, 0.7], 0.0),
         (pull_push::METHOD, [0.0, 0.0], 2.0),
     ];
     let mut of_ewa = None;
