@@ -1,7 +1,6 @@
 //! A command buffer with its pool and fence.
 
 use super::command_pool::CommandPool;
-use super::labels::Labels;
 use super::lock;
 use super::timestamps::Timestamps;
 use super::{Device, PassTime, Recorder};
@@ -60,7 +59,7 @@ impl Commands {
             raw.end_command_buffer(self.cmd).map_err(Error::vulkan("vkEndCommandBuffer"))?;
             {
                 let queue = lock(queue);
-                let _alone = self.device.labels.as_ref().and_then(Labels::lock_if_validated);
+                let _alone = self.device.lock_if_validated();
                 raw.queue_submit(*queue, &submit, self.fence).map_err(Error::vulkan("vkQueueSubmit"))?;
             }
             self.device.wait(self.fence)?;

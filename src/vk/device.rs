@@ -20,7 +20,7 @@ use std::ffi::CStr;
 use std::mem::ManuallyDrop;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 /// Options of [`Device::open`].
 #[derive(Clone, Debug, Default)]
@@ -237,9 +237,14 @@ impl Device {
     pub fn wait_idle(&self) -> Result<()> {
         let (queue, _) = self.queue()?;
         let _locked = lock(queue);
-        let _alone = self.labels.as_ref().and_then(Labels::lock_if_validated);
+        let _alone = self.lock_if_validated();
         // SAFETY: the device's only queue is locked.
         unsafe { self.raw.device_wait_idle() }.map_err(Error::vulkan("vkDeviceWaitIdle"))
+    }
+
+    /// Keeps other threads from recording during a submission or a wait under validation: see [`Labels`].
+    pub(super) fn lock_if_validated(&self) -> Option<MutexGuard<'_, ()>> {
+        self.labels.as_ref().and_then(Labels::lock_if_validated)
     }
 
     /// Waits for a fence.

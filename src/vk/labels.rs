@@ -17,8 +17,9 @@ pub(super) struct Labels {
     validated: bool,
 }
 
-/// How long a wait under validation lets others record before it looks again: at first, then each time twice as long, at most.
-const PAUSES: [Duration; 2] = [Duration::from_micros(50), Duration::from_millis(2)];
+/// Pauses of a wait under validation, in which other threads record: the first; each next one is twice as long, up to the longest.
+const FIRST_PAUSE: Duration = Duration::from_micros(50);
+const LONGEST_PAUSE: Duration = Duration::from_millis(2);
 
 impl Labels {
     pub(super) fn new(instance: &ash::Instance, device: &ash::Device, validated: bool) -> Self {
@@ -41,7 +42,7 @@ impl Labels {
     /// The fence is of the device, and submitted or signalled.
     pub(super) unsafe fn wait(&self, device: &ash::Device, fence: vk::Fence) -> Result<(), vk::Result> {
         let timeout = if self.validated { 0 } else { u64::MAX };
-        let [mut pause, longest] = PAUSES;
+        let mut pause = FIRST_PAUSE;
         loop {
             let alone = self.lock_if_validated();
             // SAFETY: by the caller.
@@ -51,7 +52,7 @@ impl Labels {
             }
             drop(alone);
             std::thread::sleep(pause);
-            pause = longest.min(2 * pause);
+            pause = LONGEST_PAUSE.min(2 * pause);
         }
     }
 

@@ -2,7 +2,6 @@
 
 use super::Device;
 use super::command_pool::CommandPool;
-use super::labels::Labels;
 use super::lock;
 use super::presenter::Presented;
 use crate::error::{Error, Result};
@@ -110,7 +109,7 @@ impl Slot {
             .wait_dst_stage_mask(&stages[..waits.as_slice().len()])
             .signal_semaphores(signals.as_slice())];
         let queue = lock(queue);
-        let _alone = self.device.labels.as_ref().and_then(Labels::lock_if_validated);
+        let _alone = self.device.lock_if_validated();
         // SAFETY: the buffer was recorded whole; the fence was waited for, and the queue is locked.
         unsafe {
             self.device.raw.reset_fences(&[self.done]).map_err(Error::vulkan("vkResetFences"))?;
