@@ -1,6 +1,6 @@
-// Sides: drops splats that face away from the eye where a surface that faces it hides them, lies at most a radius behind their centres, or is
-// beside and a little before these: the far side of a closed surface, which would shine past outlines as if it faced the eye. Others are the back
-// of an open surface, and open the tiles that they may change, if these have been drawn without them.
+// Sides: drops splats that face away from the eye where a surface that faces it hides them, lies at most a radius behind their centres, or is a
+// little nearer in a pixel beside that of the centre: the far side of a closed surface, which would shine past outlines as if it faced the eye.
+// Others are the back of an open surface, and open the tiles that they may change, if these have been drawn without them.
 #version 450
 #pragma variant TILES COMPUTE
 #extension GL_GOOGLE_include_directive : require
@@ -78,13 +78,12 @@ bool has_surfel(uint entry) {
 
 #endif
 
-// A surface that faces the eye before a centre is the disc's own, which has turned round at an outline, if it is so far before the centre at most,
-// in radii or, if these are less, in widths of a pixel; or if the disc is steep: its angle to the screen has this tangent, of 76°. A disc that reaches
-// an outline of its surface, with a radius of curvature of R radii, is √(8 R) radii behind it and has the tangent √(R / 2) at least.
-const float BEFORE_CENTRE = 16.0;
-const float STEEP = 4.0;
-// The same beside the centre.
-const float BEFORE_BESIDE = 8.0;
+// A disc that reaches past an outline of its own surface lies close behind that surface, or is steep. On a surface with a radius of curvature of R
+// disc radii, it is at most √(8 R) disc radii behind, and the tangent of its angle to the screen is at least √(R / 2). The limits meet at R = 32.
+const float BEHIND_CENTRE = 16.0; // disc radii, or widths of a pixel where these are larger
+const float STEEP = 4.0;          // tangent: 76°
+// How far the disc may be behind the surface in a pixel beside its centre's; same unit. Measured.
+const float BEHIND_BESIDE = 8.0;
 const ivec2 BESIDE[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
 
 // κ of the point behind the centre by `offset`, relative to the distance in perspective, else in κ; moved back by ε as those of visibility are.
@@ -98,8 +97,8 @@ float key_at(ivec2 centre, ivec2 offset) {
     return front_key(uvec2(clamp(centre + offset, ivec2(0), ivec2(frame.viewport) - 1)));
 }
 
-// Whether a surface that faces the eye hides a splat, or is its own beyond an outline. One that is far before it, and hides it in part, is not: the
-// rest of the splat is seen past that surface's end.
+// Whether a surface that faces the eye hides a splat, or is the splat's own surface before an outline. A surface far before the splat that hides
+// it only in part leaves the rest visible, as the rim of a bowl does with the far inside.
 bool is_hidden(Splat splat) {
     float plane = plane_at(splat.plane_hi, splat.plane_lo, splat.offset), key = plane;
 #ifdef TILES
@@ -112,19 +111,21 @@ bool is_hidden(Splat splat) {
     float width = PERSPECTIVE ? frame.pixel_width : frame.key_slope * frame.pixel_width;
     float own = key_behind(key, shift, 0.0), unit = max(radius, width);
     ivec2 centre = ivec2(anchor_of(splat));
+    float at_centre = key_at(centre, ivec2(0));
+    if (at_centre >= key_behind(key, shift, radius)) {
+        float slope = length(splat.plane_hi.yz) / (PERSPECTIVE ? plane : 1.0);
+        if (slope > STEEP * width || at_centre <= key_behind(key, shift, -BEHIND_CENTRE * unit)) return true;
+        int reach = int(min(radius / width, 1e6)) + 2;
+        bool are_ends_hidden = true;
+        for (int k = 0; k < 4; k++) are_ends_hidden = are_ends_hidden && key_at(centre, reach * BESIDE[k]) >= own;
+        if (are_ends_hidden) return true;
+    }
+    float nearest = key_behind(key, shift, -BEHIND_BESIDE * unit);
     for (int k = 0; k < 4; k++) {
         float beside = key_at(centre, BESIDE[k]);
-        if (beside >= own && beside <= key_behind(key, shift, -BEFORE_BESIDE * unit)) return true;
+        if (beside >= own && beside <= nearest) return true;
     }
-    float at_centre = key_at(centre, ivec2(0));
-    if (at_centre < key_behind(key, shift, radius)) return false;
-    float slope = length(splat.plane_hi.yz) / (PERSPECTIVE ? plane : 1.0);
-    if (at_centre <= key_behind(key, shift, -BEFORE_CENTRE * unit) || slope > STEEP * width) return true;
-    int reach = int(min(radius / width, 1e6)) + 2;
-    for (int k = 0; k < 4; k++) {
-        if (key_at(centre, reach * BESIDE[k]) < own) return false;
-    }
-    return true;
+    return false;
 }
 
 void main() {

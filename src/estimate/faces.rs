@@ -10,8 +10,8 @@ use glam::{DVec3, Vec3};
 /// error.
 const CANCELLED: f64 = 1e-3;
 
-/// Cosine of the angle between a triangle and a disc beyond which the disc only covers the triangle's projection: 60°. It would stand out far
-/// beyond the surface, where long triangles end at a depth that leaps, without covering more of them.
+/// Cosine of the angle between a triangle and a disc, 60°: a disc covers steeper triangles only as projected onto its plane. Those at depth
+/// discontinuities of a scan are long, and a disc of their length would extend beyond the surface without covering more of them.
 const STEEP: f64 = 0.5;
 
 /// Attributes of a point from its faces.

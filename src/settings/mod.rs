@@ -299,9 +299,9 @@ pub enum Cull {
     Back,
     /// Of the surfels whose normals face away, those of the far side of a closed surface are culled.
     ///
-    /// These are surfels that a surface which faces the eye hides, or goes on as past an outline: see the guide, Methods, Sides. Culling
-    /// equals `back` on closed surfaces, and leaves open ones whole from behind. Other normals are flipped towards the eye. Pull–push,
-    /// [`Visibility::Axis`] and subpasses of a host draw both sides.
+    /// These are surfels that are hidden by a surface that faces the eye, or lie just past an outline of it: see the guide, Methods, Sides.
+    /// Culling equals `back` on closed surfaces, and leaves open ones whole from behind. Other normals are flipped towards the eye.
+    /// Pull–push, [`Visibility::Axis`] and subpasses of a host draw both sides.
     Auto,
 }
 

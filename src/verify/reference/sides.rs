@@ -1,5 +1,5 @@
 //! Pass `sides`: drops splats that face away where a surface that faces the eye hides them, lies at most a radius behind
-//! their centres, or is beside and a little before these.
+//! their centres, or is a little nearer in a pixel beside that of the centre.
 
 use super::bands::{Bands, ROWS};
 use super::depth_range::{DepthRange, DepthRanges};
@@ -15,15 +15,14 @@ const CENTRE_TOLERANCE: f64 = 1e-3;
 /// Rounding error of ε / z in float32, as it is recovered from `1 / (1 + ε / z)`.
 const SHIFT_ERROR: f64 = 4.0 / (1 << 24) as f64;
 
-/// A surface that faces the eye before a centre is the disc's own, which has turned round at an outline, if it is so far
-/// before the centre at most, in radii or, if these are less, in widths of a pixel; or if the disc is [`STEEP`]. A disc that
-/// reaches an outline of its surface, with a radius of curvature of R radii, is √(8 R) radii behind it and has the tangent
-/// √(R / 2) at least.
-const BEFORE_CENTRE: f64 = 16.0;
-/// The same beside the centre.
-const BEFORE_BESIDE: f64 = 8.0;
+/// A disc that reaches past an outline of its own surface lies at most so far behind that surface, in disc radii or, where
+/// these are larger, widths of a pixel; or it is [`STEEP`]. On a surface with a radius of curvature of R disc radii, it is at
+/// most √(8 R) disc radii behind, and the tangent of its angle to the screen is at least √(R / 2). The limits meet at R = 32.
+const BEHIND_CENTRE: f64 = 16.0;
 /// Tangent of the angle to the screen from which a disc is steep: 76°.
 const STEEP: f64 = 4.0;
+/// How far the disc may be behind the surface in a pixel beside its centre's; same unit. Measured.
+const BEHIND_BESIDE: f64 = 8.0;
 /// Relative rounding error of that tangent, and of a radius in widths of a pixel.
 const STEEP_ERROR: f64 = 1e-4;
 
@@ -48,9 +47,9 @@ pub(super) fn pass(projector: &Projector, scene: ProjectedScene, size: [u32; 2])
         let centre = pixel(splat.centre, size);
         let reach = radius(projector, splat) / projector.pixel_width();
         let is_hidden = |at| is_within(at, f64::NEG_INFINITY, own);
-        around(centre, 1, size).any(|at| is_within(at, before(BEFORE_BESIDE), own))
+        around(centre, 1, size).any(|at| is_within(at, before(BEHIND_BESIDE), own))
             || is_within(centre, f64::NEG_INFINITY, behind)
-                && (is_within(centre, before(BEFORE_CENTRE), behind)
+                && (is_within(centre, before(BEHIND_CENTRE), behind)
                     || steepness(projector, splat) > STEEP
                     || around(centre, ends(reach), size).all(is_hidden))
     };
@@ -73,6 +72,14 @@ struct Outcome {
 impl Outcome {
     const NO: Self = Self { possibly: false, certainly: false };
     const YES: Self = Self { possibly: true, certainly: true };
+
+    /// Of depths, or of pixels, of which one is the true one: it holds certainly if it does for all of them, possibly if for any.
+    fn of_one_of(outcomes: impl Iterator<Item = Self>) -> Self {
+        outcomes.fold(Self { possibly: false, certainly: true }, |all, one| Self {
+            possibly: all.possibly || one.possibly,
+            certainly: all.certainly && one.certainly,
+        })
+    }
 
     fn or(self, other: Self) -> Self {
         Self { possibly: self.possibly || other.possibly, certainly: self.certainly || other.certainly }
@@ -100,7 +107,7 @@ pub(super) fn possible(model: &ErrorModel, scene: ProjectedScene, size: [u32; 2]
         if !splat.back {
             return Some(splat);
         }
-        match seen.drop(&splat) {
+        match seen.hides(&splat) {
             Outcome { certainly: true, .. } => None,
             Outcome { possibly, .. } => Some(Splat { certain: splat.certain && !possibly, ..splat }),
         }
@@ -116,22 +123,19 @@ struct Fronts<'a> {
 }
 
 impl Fronts<'_> {
-    /// Whether a splat that faces away is dropped: in all the pixels where its centre may be, and in any.
-    fn drop(&self, splat: &Splat) -> Outcome {
+    /// Whether a splat that faces away is dropped, wherever rounding puts its centre and its ends.
+    fn hides(&self, splat: &Splat) -> Outcome {
         let projector = self.model.projector;
         let reach = radius(projector, splat) / projector.pixel_width();
         let least = ends(reach * (1.0 - STEEP_ERROR));
         let most = ends(reach * (1.0 + STEEP_ERROR));
         let each = pixels(splat.centre, self.size)
-            .flat_map(|centre| [least, most].map(|reach| self.drop_at(splat, centre, reach)));
-        each.fold(Outcome { possibly: false, certainly: true }, |all, one| Outcome {
-            possibly: all.possibly || one.possibly,
-            certainly: all.certainly && one.certainly,
-        })
+            .flat_map(|centre| [least, most].map(|reach| self.hides_at(splat, centre, reach)));
+        Outcome::of_one_of(each)
     }
 
-    /// Whether it is dropped if its centre is in this pixel.
-    fn drop_at(&self, splat: &Splat, centre: [u32; 2], reach: u32) -> Outcome {
+    /// Whether it is dropped if its centre is in this pixel, and its ends are `reach` px away.
+    fn hides_at(&self, splat: &Splat, centre: [u32; 2], reach: u32) -> Outcome {
         let projector = self.model.projector;
         let own = bound(self.model, splat, [0.0, 0.0]);
         let before = |units: f64| bound(self.model, splat, [-units * unit(projector, splat), units]);
@@ -142,11 +146,11 @@ impl Fronts<'_> {
             certainly: slope > STEEP * (1.0 + STEEP_ERROR),
         };
         let near =
-            around(centre, 1, self.size).map(|at| self.is_within(at, Some(before(BEFORE_BESIDE)), own));
+            around(centre, 1, self.size).map(|at| self.is_within(at, Some(before(BEHIND_BESIDE)), own));
         let near = near.fold(Outcome::NO, Outcome::or);
         let hidden = around(centre, reach, self.size).map(|at| self.is_within(at, None, own));
         let hidden = hidden.fold(Outcome::YES, Outcome::and);
-        let close = self.is_within(centre, Some(before(BEFORE_CENTRE)), behind);
+        let close = self.is_within(centre, Some(before(BEHIND_CENTRE)), behind);
         near.or(self.is_within(centre, None, behind).and(close.or(steep).or(hidden)))
     }
 
@@ -164,10 +168,7 @@ impl Fronts<'_> {
             });
             nearer.and(farther)
         };
-        ranges.map(of_range).fold(Outcome { possibly: false, certainly: true }, |all, one| Outcome {
-            possibly: all.possibly || one.possibly,
-            certainly: all.certainly && one.certainly,
-        })
+        Outcome::of_one_of(ranges.map(of_range))
     }
 }
 
