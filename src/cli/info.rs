@@ -172,27 +172,26 @@ fn connectivity(report: &Report, cloud: &Cloud) -> String {
 
 /// Describes where normals and radii come from.
 fn sources(estimated: &Estimated) -> String {
-    let list = |counts: [(u64, &str); 4]| {
+    let list = |counts: &[(u64, &str)]| {
         let some = counts.iter().filter(|(count, _)| *count > 0);
         some.map(|(count, what)| format!("{count} {what}")).collect::<Vec<_>>().join(", ")
     };
-    let normals = list([
+    let normals = list(&[
         (estimated.normals_given, "given"),
         (estimated.normals_from_faces, "from faces"),
         (estimated.normals_from_neighbours, "from neighbours"),
         (estimated.two_sided, "two-sided"),
+        (estimated.scattered, "unlike their neighbours'"),
     ]);
-    let radii = list([
+    let radii = list(&[
         (estimated.radii_given, "given"),
         (estimated.radii_from_faces, "from faces"),
         (estimated.radii_from_neighbours, "from neighbours"),
-        (0, ""),
     ]);
-    let lines = list([
+    let lines = list(&[
         (estimated.line_radii_given, "given"),
         (estimated.line_radii_from_lines, "from others of the line"),
         (estimated.line_radii_from_extent, "from the lines' extent"),
-        (0, ""),
     ]);
     let lines = if lines.is_empty() { lines } else { format!("radii of lines: {lines}\n") };
     format!("normals: {normals}\nradii: {radii}\n{lines}")

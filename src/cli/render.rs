@@ -74,13 +74,17 @@ pub fn run(args: &Render) -> Result<()> {
     };
     let mut loaded = load(&args.inputs, &options, &*bars)?;
     let method = method(args.method, &loaded.model)?;
-    let settings = args.settings(&method);
+    let shading = args.render_settings.shading.unwrap_or_else(|| loaded.shading());
+    let settings = Settings { shading, ..args.settings(&method) };
     settings.check()?;
     settings.check_outputs(args.outputs())?;
     if !args.quiet {
         let input = args.inputs.first().map_or(Path::new(""), Path::new);
-        let is_up_given = camera::up(&args.camera, file).is_some();
-        summary::assumptions(input, is_up_given, &loaded).iter().for_each(|line| progress::say(line));
+        let given = summary::Given {
+            up: camera::up(&args.camera, file).is_some(),
+            shading: args.render_settings.shading.is_some(),
+        };
+        summary::assumptions(input, given, &loaded).iter().for_each(|line| progress::say(line));
     }
     let extent = Extent::of(&loaded.model);
     let extent = extent.ok_or_else(|| Error::Usage("the inputs hold nothing that can be drawn".into()))?;
@@ -169,7 +173,7 @@ pub fn keep_layers(picture: &mut Picture, layers: Outputs) {
 fn check_colours(args: &Render, colouring: Option<&Colouring>, out: &Output) -> Result<()> {
     let Some(colouring) = colouring else { return Ok(()) };
     let refuse = |text: &str| Err(Error::Usage(text.into()));
-    if !args.render_settings.shading.is_coloured() {
+    if args.render_settings.shading.is_some_and(|shading| !shading.is_coloured()) {
         return refuse("--color-by is visible with --shading lit or color only: choose one of them");
     }
     if !args.color_bar {

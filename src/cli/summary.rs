@@ -5,7 +5,7 @@ use std::path::Path;
 use surfel::Settings;
 use surfel::geometry::{Camera, Model, Surfels};
 use surfel::load::LoadedModel;
-use surfel::settings::Cull;
+use surfel::settings::{Cull, Shading};
 
 /// Parts of a model: `5 surfels, 2 ribbons`.
 pub fn parts(Model { surfels, primitives }: &Model) -> String {
@@ -25,18 +25,32 @@ pub fn parts(Model { surfels, primitives }: &Model) -> String {
     }
 }
 
-/// What was assumed of inputs that do not tell, a line each: the up direction, and colours. `is_up_given` if the user or a camera file sets it.
-pub fn assumptions(input: &Path, is_up_given: bool, loaded: &LoadedModel) -> Vec<String> {
+/// What the user or a camera file sets, so that it is not assumed.
+#[derive(Clone, Copy)]
+pub struct Given {
+    /// The up direction.
+    pub up: bool,
+    /// The shading.
+    pub shading: bool,
+}
+
+/// What was assumed of inputs that do not tell, a line each: the up direction, colours, and shading.
+pub fn assumptions(input: &Path, given: Given, loaded: &LoadedModel) -> Vec<String> {
     let name = input.display();
-    let up =
-        (!is_up_given && loaded.up == DVec3::Z).then(|| format!("{name}: z is up: --up 0,1,0 makes it y"));
+    let up = (!given.up && loaded.up == DVec3::Z).then(|| format!("{name}: z is up: --up 0,1,0 makes it y"));
     let colours = loaded.suggestion.as_ref().map(|suggestion| {
         format!(
             "{name}: no colours, so coloured by {}: --color-by file leaves the points plain",
             suggestion.name
         )
     });
-    up.into_iter().chain(colours).collect()
+    let shading = (!given.shading && loaded.shading() == Shading::Edl).then(|| {
+        format!(
+            "{name}: {:.0} % of the normals are unlike their neighbours', so shaded by eye-dome lighting: --shading lit lights them",
+            100.0 * loaded.scattered()
+        )
+    });
+    up.into_iter().chain(colours).chain(shading).collect()
 }
 
 /// Part of the surfels above which their culling is reported.

@@ -141,6 +141,9 @@ pub struct Estimated {
     pub normals_from_faces: u64,
     /// Normals from the nearest points.
     pub normals_from_neighbours: u64,
+    /// Points among them whose normals have little in common with those of their neighbours, as in vegetation and in the noise of depth
+    /// cameras: they mean nothing.
+    pub scattered: u64,
     /// Two-sided surfels: the side of the normal is unknown, or the file declares it.
     pub two_sided: u64,
     /// Radii from the file, or from [`Estimate::radius`].
@@ -177,6 +180,7 @@ impl Add for Estimated {
             normals_given: self.normals_given + other.normals_given,
             normals_from_faces: self.normals_from_faces + other.normals_from_faces,
             normals_from_neighbours: self.normals_from_neighbours + other.normals_from_neighbours,
+            scattered: self.scattered + other.scattered,
             two_sided: self.two_sided + other.two_sided,
             radii_given: self.radii_given + other.radii_given,
             radii_from_faces: self.radii_from_faces + other.radii_from_faces,
@@ -261,6 +265,7 @@ mod tests {
             normals_given: 1,
             normals_from_faces: 2,
             normals_from_neighbours: 3,
+            scattered: 17,
             two_sided: 4,
             radii_given: 5,
             radii_from_faces: 6,
@@ -279,6 +284,7 @@ mod tests {
             normals_given: 2,
             normals_from_faces: 4,
             normals_from_neighbours: 6,
+            scattered: 34,
             two_sided: 8,
             radii_given: 10,
             radii_from_faces: 12,

@@ -24,6 +24,9 @@ const LARGEST_OVERALL: f32 = 2.0;
 const LARGEST_SPARSE: [f32; 2] = [1.5, 4.0];
 /// Radius, as a part of the cloud's diagonal, that discs on a surface may have in any case: the far walls of a room stay closed.
 const LARGEST_PART: f32 = 0.002;
+/// Mean absolute cosine between a point's normal and those of its neighbours below which the normals have little in common: that of 37°; of
+/// random directions it is ½.
+const LEAST_ALIKE: f32 = 0.8;
 /// Number of sites per task.
 const PIECE: usize = 1 << 12;
 
@@ -39,9 +42,9 @@ pub(super) fn fill(
     let survey = Survey::new(sites, wanted(surfels, sites), how, progress)?;
     let (normals, unknown) = normals(surfels, sites, &survey, view, progress);
     progress.check_cancelled()?;
-    let radii = radii(surfels, sites, &survey);
+    let (radii, scattered) = (radii(surfels, sites, &survey), survey.scattered(&normals));
     let is_estimated: Vec<bool> = surfels.radii.iter().map(|radius| *radius == 0.0).collect();
-    put(draft, sites, &normals, &unknown, &radii);
+    put(draft, sites, &OfSites { normals, unknown, radii, scattered });
     if how.elliptical {
         stretch(&mut draft.surfels, sites, &survey, &is_estimated);
     }
@@ -56,18 +59,30 @@ fn wanted(surfels: &Surfels, sites: &Sites) -> Vec<u32> {
     (0..sites.len() as u32).filter(|&site| wanted[site as usize]).collect()
 }
 
+/// What was estimated for every site.
+struct OfSites {
+    normals: Vec<Vec3>,
+    /// Whether the side of the normal is unknown.
+    unknown: Vec<bool>,
+    radii: Vec<f32>,
+    /// Whether its normal and those of its neighbours have little in common.
+    scattered: Vec<bool>,
+}
+
 /// Sets missing normals and radii.
-fn put(draft: &mut Draft, sites: &Sites, normals: &[Vec3], unknown: &[bool], radii: &[f32]) {
+fn put(draft: &mut Draft, sites: &Sites, of_sites: &OfSites) {
     let (surfels, estimated) = (&mut draft.surfels, &mut draft.estimated);
     let mut two_sided = surfels.two_sided.take().unwrap_or_else(|| vec![false; surfels.len()]);
     for (i, &site) in sites.of_point.iter().enumerate() {
+        let site = site as usize;
         if surfels.normals[i] == Vec3::ZERO {
-            surfels.normals[i] = normals[site as usize];
-            two_sided[i] = unknown[site as usize];
+            surfels.normals[i] = of_sites.normals[site];
+            two_sided[i] = of_sites.unknown[site];
             estimated.normals_from_neighbours += 1;
+            estimated.scattered += u64::from(of_sites.scattered[site]);
         }
         if surfels.radii[i] == 0.0 {
-            surfels.radii[i] = radii[site as usize];
+            surfels.radii[i] = of_sites.radii[site];
             estimated.radii_from_neighbours += 1;
         }
     }
@@ -135,6 +150,17 @@ impl Survey {
             );
         }
         edges
+    }
+
+    /// Whether each site's normal and those of its neighbours have little in common.
+    fn scattered(&self, normals: &[Vec3]) -> Vec<bool> {
+        let mut scattered = vec![false; normals.len()];
+        for (site, _, near) in self.each() {
+            let normal = normals[site as usize];
+            let cosines = near.iter().map(|&other| normals[other as usize].dot(normal).abs());
+            scattered[site as usize] = cosines.sum::<f32>() < LEAST_ALIKE * near.len() as f32;
+        }
+        scattered
     }
 
     /// Each site with its patch and neighbours.
@@ -261,5 +287,27 @@ mod tests {
             radii((0..900).map(|i| step * Vec3::new((i % 30) as f32, (i / 30) as f32, 0.0)).collect());
         let inner = found.iter().filter(|(x, _)| (1.0..8.0).contains(x)).map(|(_, radius)| *radius);
         assert!(inner.fold(f32::MAX, f32::min) >= 0.7 * step);
+    }
+
+    #[test]
+    fn normals_are_unlike_their_neighbours_in_a_volume_and_alike_on_a_surface() {
+        let scattered = |positions: Vec<Vec3>| {
+            let cloud = Cloud { positions, ..Default::default() };
+            let (surfels, counts) = cloud.into_surfels(&Estimate::default(), &()).unwrap();
+            counts.scattered as f64 / surfels.len() as f64
+        };
+        // Points of a low-discrepancy sequence in a cube, on its bottom, and on a cylinder of six spacings' radius.
+        let part = |i: usize, step: f64| (step * i as f64).fract() as f32;
+        let in_cube = |i| Vec3::new(part(i, 0.819_172_5), part(i, 0.671_043_6), part(i, 0.549_700_5));
+        let on_cylinder = |i| {
+            let (sin, cos) = (std::f32::consts::TAU * part(i, 0.754_877_7)).sin_cos();
+            Vec3::new(cos, sin, 8.0 * part(i, 0.569_840_3))
+        };
+        let [cube, bottom, cylinder] = [
+            scattered((0..2000).map(in_cube).collect()),
+            scattered((0..2000).map(|i| in_cube(i).with_z(0.0)).collect()),
+            scattered((0..2000).map(on_cylinder).collect()),
+        ];
+        assert!(cube > 0.4 && bottom == 0.0 && cylinder == 0.0, "{cube} {bottom} {cylinder}");
     }
 }

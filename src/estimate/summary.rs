@@ -9,6 +9,7 @@ impl Estimated {
         let normals = sources(counts.normals_from_faces, counts.normals_from_neighbours);
         let radii = sources(counts.radii_from_faces, counts.radii_from_neighbours);
         let two_sided = Some(counts.two_sided).filter(|&count| count > 0 && normals.is_some());
+        let scattered = Some(counts.scattered).filter(|&count| count > 0);
         let turned = Some(counts.triangles_turned).filter(|&count| count > 0);
         let replaced = Some(counts.vertices_replaced).filter(|&count| count > 0);
         let outliers = Some(counts.outliers).filter(|&count| count > 0);
@@ -21,6 +22,7 @@ impl Estimated {
             normals.map(|text| format!("normals of {text}")),
             radii.map(|text| format!("radii of {text}")),
             two_sided.map(|count| format!("{count} two-sided")),
+            scattered.map(|count| format!("{count} normals unlike their neighbours'")),
             turned.map(|count| {
                 format!("{count} triangles turned round, as their surface is wound inwards or inconsistently")
             }),

@@ -4,6 +4,7 @@
 //! merged.
 
 mod colouring;
+mod shading;
 mod suggestion;
 
 pub use colouring::{Coloured, Colouring};

@@ -50,6 +50,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use surfel::frame::faster::FasterRasterizers;
 use surfel::geometry::{ColourMap, Extent, Model, Pose, ValueRange};
+use surfel::settings::Shading;
 use surfel::settings::methods::Method;
 use surfel::vk::{Device, DeviceOptions};
 use surfel::{Progress, Rasterizer, RasterizerChoice, Result, Settings};
@@ -103,6 +104,8 @@ pub struct Loaded {
     pub colour_by: Option<ColourBy>,
     /// The first method.
     pub method: Method,
+    /// What the scene is first shaded by, instead of the usual shading; `None` for that.
+    pub shading: Option<Shading>,
     /// Information for the user.
     pub info: SceneInfo,
     /// Up direction of the world, a unit vector; the camera takes the nearest axis.
@@ -118,6 +121,7 @@ impl Loaded {
             properties: None,
             colour_by: None,
             method,
+            shading: None,
             info: SceneInfo::default(),
             up: DVec3::Y,
         }

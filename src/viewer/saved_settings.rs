@@ -66,10 +66,10 @@ impl SavedSettings {
         usable.then_some(saved).ok_or_else(|| unusable("it holds unknown names or invalid values".into()))
     }
 
-    /// The settings of the view; `None` if no scene is shown.
+    /// The settings of the view, for any scene; `None` if no scene is shown.
     pub fn of(state: &ViewState, ui_state: &UiState) -> Option<Self> {
-        let ([method, _], settings) = state.names().zip(state.settings())?;
-        Some(Self::of_settings(method, settings, ui_state.panel_hidden))
+        let ([method, _], settings) = state.names().zip(state.settings_to_save())?;
+        Some(Self::of_settings(method, &settings, ui_state.panel_hidden))
     }
 
     fn of_settings(method: &str, settings: &Settings, panel_hidden: bool) -> Self {

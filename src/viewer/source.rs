@@ -10,8 +10,9 @@ use rayon::prelude::*;
 use std::sync::Arc;
 use surfel::geometry::{Colours, Extent, Model, Surfels, ValueRange};
 use surfel::scene::{Changes, ColourStream};
+use surfel::settings::Shading;
 use surfel::vk::Device;
-use surfel::{Error, Progress, Result, Scene};
+use surfel::{Error, Progress, Result, Scene, Settings};
 
 /// The model of a scene, and its appearance.
 pub struct Source {
@@ -38,6 +39,8 @@ pub struct Source {
     info: SceneInfo,
     /// The up axis of the world, a unit vector.
     up: DVec3,
+    /// The first shading, instead of the usual one; `None` for that.
+    shading: Option<Shading>,
 }
 
 /// A property that is being read.
@@ -51,7 +54,9 @@ struct Reading {
 
 impl Source {
     /// The source of what was loaded.
-    pub fn new(Loaded { model, surface, properties, colour_by, info, up, method: _ }: Loaded) -> Self {
+    pub fn new(
+        Loaded { model, surface, properties, colour_by, info, up, shading, method: _ }: Loaded,
+    ) -> Self {
         let mut source = Self {
             extent: Extent::of(&model).unwrap_or_default(),
             model: Arc::new(model),
@@ -65,6 +70,7 @@ impl Source {
             default_ranges: Vec::new(),
             info,
             up,
+            shading,
         };
         if let Some(colour_by) = colour_by {
             source.colour_by_name(colour_by);
@@ -97,6 +103,20 @@ impl Source {
     /// The up direction of the world, a unit vector.
     pub fn up(&self) -> DVec3 {
         self.up
+    }
+
+    /// The scene's first shading instead of the usual one.
+    pub fn shaded(&self, settings: Settings) -> Settings {
+        let is_usual = settings.shading == Settings::default().shading;
+        let shading = self.shading.filter(|_| is_usual).unwrap_or(settings.shading);
+        Settings { shading, ..settings }
+    }
+
+    /// The usual shading instead of the scene's first one: the settings for any scene.
+    pub fn unshaded(&self, settings: Settings) -> Settings {
+        let is_first = self.shading == Some(settings.shading);
+        let shading = if is_first { Settings::default().shading } else { settings.shading };
+        Settings { shading, ..settings }
     }
 
     /// What a camera frames.
@@ -468,5 +488,21 @@ mod tests {
         source.applied = source.wanted;
         assert_eq!(source.visible_model().surfels.radii, [1.5; 3]);
         assert_eq!(source.model.surfels.radii, [0.5; 3]);
+    }
+
+    #[test]
+    fn a_scene_is_shaded_by_its_first_shading_unless_another_was_chosen() {
+        let with = |shading| Settings { shading, ..Settings::default() };
+        let source = |shading| {
+            let model = Model::default();
+            Source::new(Loaded { shading, ..Loaded::new(model, Method::ALL[0]) })
+        };
+        let (dark, plain) = (source(Some(Shading::Edl)), source(None));
+        assert_eq!(dark.shaded(with(Shading::Lit)).shading, Shading::Edl);
+        assert_eq!(dark.shaded(with(Shading::Normal)).shading, Shading::Normal);
+        assert_eq!(plain.shaded(with(Shading::Lit)).shading, Shading::Lit);
+        // The next scene is not shaded by the first shading of this one, but by what was chosen.
+        assert_eq!(dark.unshaded(with(Shading::Edl)).shading, Shading::Lit);
+        assert_eq!(plain.unshaded(with(Shading::Edl)).shading, Shading::Edl);
     }
 }

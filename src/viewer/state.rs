@@ -87,8 +87,11 @@ impl ViewState {
             source.restore(&appearance);
             (method, settings)
         });
-        let known = lost.or(self.saved.take_if(|saved| can_render(&scene, &saved.1)));
-        let (method, settings) = known.unwrap_or_else(|| (method, (self.method_settings)(&method)));
+        let (method, settings) = lost.unwrap_or_else(|| {
+            let saved = self.saved.take_if(|saved| can_render(&scene, &saved.1));
+            let (method, settings) = saved.unwrap_or_else(|| (method, (self.method_settings)(&method)));
+            (method, source.shaded(settings))
+        });
         if !origin.preview {
             self.saved = None;
         }
@@ -97,6 +100,7 @@ impl ViewState {
                 let orbit = if preview.is_moved() { preview.orbit } else { framed };
                 source.restore(&preview.source.saved_appearance());
                 let (method, settings) = preview.method_for(&scene, (method, settings));
+                let settings = source.shaded(settings);
                 let before = None;
                 SceneView { scene, source, origin, orbit, framed, before, method, settings, ..preview }
             }
@@ -120,6 +124,11 @@ impl ViewState {
     /// The settings, if a scene is shown.
     pub fn settings(&self) -> Option<&Settings> {
         self.view.as_ref().map(|view| &view.settings)
+    }
+
+    /// The settings for the next run, with any scene.
+    pub fn settings_to_save(&self) -> Option<Settings> {
+        self.view.as_ref().map(|view| view.source.unshaded(view.settings.clone()))
     }
 
     /// Version of the scene's contents.

@@ -253,3 +253,30 @@ fn a_strength_of_eye_dome_lighting_implies_it() {
         ["--edl 2", "--shading edl --edl 2", "", "--shading lit --edl 2"].map(picture);
     assert!(implied == named && implied != lit && chosen == lit);
 }
+
+#[test]
+fn coloured_points_on_no_surface_are_shaded_by_eye_dome_lighting() {
+    let program = Program::new();
+    let cloud = |header: &str, depth: f64, colour: &str| {
+        let part = |i: usize, step: f64| (step * i as f64).fract();
+        let points = (0..600).map(|i| {
+            let [x, y, z] = [0.819_172_5, 0.671_043_6, depth * 0.549_700_5].map(|step| part(i, step));
+            format!("{x:.6} {y:.6} {z:.6}{colour}\n")
+        });
+        format!("{header}\n{}", points.collect::<String>())
+    };
+    program.write("plain.xyz", cloud("x y z", 1.0, ""));
+    program.write("cloud.xyz", cloud("x y z red green blue", 1.0, " 90 160 40"));
+    program.write("flat.xyz", cloud("x y z red green blue", 0.0, " 90 160 40"));
+    let render = |options: &str| {
+        let run = program.run(&format!("render {options} --reference --up 0,1,0 --size 48x32 -o a.png"));
+        let is_said = run.err.contains("so shaded by eye-dome lighting: --shading lit lights them");
+        run.text();
+        (program.png("a.png"), is_said)
+    };
+    let (edl, lit) = (render("cloud.xyz --shading edl"), render("cloud.xyz --shading lit"));
+    assert!(edl.0 != lit.0 && !edl.1 && !lit.1);
+    assert!(render("cloud.xyz") == (edl.0, true));
+    assert!(render("flat.xyz") == render("flat.xyz --shading lit"));
+    assert!(render("plain.xyz --color-by file") == render("plain.xyz --color-by file --shading lit"));
+}

@@ -229,9 +229,9 @@ pub struct Camera {
 /// Render settings.
 #[derive(Args, Debug)]
 pub struct RenderSettings {
-    /// What the picture shows
-    #[arg(long, value_parser = choice::<Shading>(), default_value = Shading::Lit.name(), default_value_if("edl", ArgPredicate::IsPresent, Shading::Edl.name()))]
-    pub shading: Shading,
+    /// What the picture shows [default: lit; edl for coloured points if many estimated normals mean nothing]
+    #[arg(long, value_parser = choice::<Shading>(), default_value_if("edl", ArgPredicate::IsPresent, Shading::Edl.name()))]
+    pub shading: Option<Shading>,
     /// Strength of --shading edl, which it implies: how much pixels behind their neighbours are darkened
     #[arg(long, value_name = "STRENGTH", default_value_t = Settings::DEFAULT_EDL, allow_hyphen_values = true)]
     pub edl: f32,
@@ -334,7 +334,7 @@ impl RenderSettings {
             cull: self.cull.unwrap_or(preset.cull),
             alpha: self.alpha.unwrap_or(preset.alpha),
             edges: self.edges.unwrap_or(preset.edges),
-            shading: self.shading,
+            shading: self.shading.unwrap_or(preset.shading),
             edl: self.edl,
             background: self.background.linear(),
             lighting: preset.lighting,
