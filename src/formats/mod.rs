@@ -25,6 +25,7 @@ mod meter;
 #[cfg(feature = "pcd")]
 mod pcd;
 pub mod ply;
+mod ptx;
 mod quoted;
 mod reader;
 mod report;

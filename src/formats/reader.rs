@@ -4,7 +4,7 @@ use super::declared::{Element, Encoding};
 use super::filter::Filter;
 use super::report::Report;
 use super::source::{Parsed, Source};
-use super::{ply, sniff, text};
+use super::{ply, ptx, sniff, text};
 use crate::Progress;
 use crate::error::{Cause, Error, Result};
 use crate::geometry::{Cloud, MipMap};
@@ -40,6 +40,8 @@ static READERS: &[&dyn Reader] = &[
     &super::e57::E57,
     #[cfg(feature = "pcd")]
     &super::pcd::Pcd,
+    // Before text, of which it is a kind.
+    &ptx::Ptx,
     &text::Text,
 ];
 
@@ -180,5 +182,6 @@ mod tests {
         assert_eq!(chosen("a.PLY", b"solid\n"), Ok("PLY"));
         assert_eq!(chosen("a.ply", b"# .PCD v0.7\n"), Ok("PCD"));
         assert!(chosen("a.obj", b"v 0 1 2\n").is_err_and(|cause| cause.to_string().contains("OBJ")));
+        assert_eq!(chosen("a.xyz", b"1\n1\n0 0 0\n1 0 0\n"), Ok("PTX"));
     }
 }

@@ -56,7 +56,7 @@ pub(super) fn name(file: &str, bytes: &[u8], size: u64) -> String {
     match text(beginning) {
         Some(what) => format!("not a point cloud that can be read, but {what}"),
         None => format!(
-            "not a point cloud that can be read: it begins with {}; give a PLY, LAS, LAZ, E57, PCD or text file",
+            "not a point cloud that can be read: it begins with {}; give a PLY, LAS, LAZ, E57, PCD, PTX or text file",
             quoted(line)
         ),
     }
@@ -94,7 +94,7 @@ mod tests {
     fn files_without_a_signature_are_identified_by_length_or_name() {
         let stl = [&[0; 80][..], &2u32.to_le_bytes(), &[0; 100]].concat();
         assert!(name("a.ply", &stl, 184).contains("binary STL") && !name("a.ply", &stl, 183).contains("STL"));
-        for (file, what) in [("a.splat", ".splat"), ("b.SPZ", ".spz")] {
+        for (file, what) in [("a.ksplat", ".ksplat"), ("b.SOG", ".sog")] {
             let cause = name(file, b"\x1f\x8b\x08\0", 4);
             assert!(cause.contains("3D Gaussians") && cause.contains(what), "{cause}");
         }
@@ -108,8 +108,8 @@ mod tests {
             (b"version https://git-lfs.github.com/spec/v1\noid", "git lfs pull"),
             (b"\x1f\x8b\x08\0", "gzip"),
             (b"LASF\0\0", "LAS"),
-            (b"# made by hand\n\nv 1 2 3\n", "OBJ"),
             (b"1.0 2.0\n", "fewer than three numbers"),
+            (b"# made by hand\n\nv 1 2 3\n", "OBJ"),
             (b"<!DOCTYPE html>", "HTML"),
             (b"plyx\nformat", "begins with `plyx`"),
             (b"\0\0\0\0", "begins with `\\x00"),

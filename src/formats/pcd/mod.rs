@@ -16,7 +16,8 @@ use super::reader::{Input, Reader};
 use super::source::{Parsed, Source};
 use super::table::binary::gather;
 use super::table::{Arrays, Layout, Points, ROWS, Records, Tally, fill};
-use super::text::{lines, rows};
+use super::text::lines;
+use super::text::rows::{self, Syntax};
 use super::{Inspected, Loaded, ReadOptions, Report, sniff};
 use crate::Progress;
 use crate::error::Cause;
@@ -133,7 +134,7 @@ fn read_text(source: &Source, header: &Header, layout: &Layout, meter: &Meter) -
     let finish = |column: usize, values: &mut [f64]| {
         fields.iter().filter(|(own, _)| *own == column).for_each(|(_, field)| field.finish(values));
     };
-    rows::read(source, &pieces, header.cells, &by_cell, finish, meter)
+    rows::read(source, &pieces, Syntax::table(header.cells), &by_cell, finish, meter)
 }
 
 /// Reads compressed records: the values of each field one after the other.

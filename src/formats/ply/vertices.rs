@@ -17,8 +17,7 @@ pub(super) fn read_in_order<R: Reader>(
     let mut arrays = Arrays::new(vertex.count, layout)?;
     let mut out = arrays.slices();
     let (mut block, mut tally, mut rows) = (Block::new(), Tally::default(), 0);
-    let fields: Vec<(usize, usize)> =
-        layout.columns.iter().enumerate().filter_map(|(column, index)| Some((column, (*index)?))).collect();
+    let fields = layout.used();
     let wanted: Vec<bool> = (0..vertex.properties.len()).map(|index| layout.uses(index)).collect();
     block.set_rows(ROWS);
     walk(reader, vertex, &wanted, meter, |numbers, _| {

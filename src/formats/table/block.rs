@@ -37,6 +37,13 @@ impl Block {
         &mut self.values[column * ROWS..][..self.rows]
     }
 
+    /// Writes rows of values: each column that is used with the index of its value.
+    pub fn fill<const N: usize>(&mut self, used: &[(usize, usize)], rows: &[[f64; N]]) {
+        for &(column, index) in used {
+            self.column_mut(column).iter_mut().zip(rows).for_each(|(to, row)| *to = row[index]);
+        }
+    }
+
     /// Three consecutive columns, row by row.
     pub fn triples(&self, first: usize) -> impl Iterator<Item = DVec3> {
         let [x, y, z] = [0, 1, 2].map(|axis| self.column(first + axis));

@@ -121,9 +121,9 @@ fn fields(element: &Element, layout: &Layout) -> Vec<(usize, usize, Scalar)> {
         }
         offset += property.kind.least_size() as usize;
     }
-    let field = |(column, index): (usize, &Option<usize>)| {
-        let (offset, scalar) = *all.get((*index)?)?;
+    let field = |(column, index): (usize, usize)| {
+        let (offset, scalar) = *all.get(index)?;
         Some((column, offset, scalar))
     };
-    layout.columns.iter().enumerate().filter_map(field).collect()
+    layout.used().into_iter().filter_map(field).collect()
 }

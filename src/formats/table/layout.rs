@@ -195,6 +195,12 @@ impl Layout {
         self.columns[column].is_some()
     }
 
+    /// The filled columns, each with the index of its property.
+    pub fn used(&self) -> Vec<(usize, usize)> {
+        let columns = self.columns.iter().enumerate();
+        columns.filter_map(|(column, index)| Some((column, (*index)?))).collect()
+    }
+
     /// Whether property `index` fills a column.
     pub fn uses(&self, index: usize) -> bool {
         self.columns.contains(&Some(index))

@@ -23,6 +23,7 @@ use crate::Progress;
 use crate::error::Cause;
 use columns::{Column, Head};
 use lines::Piece;
+use rows::Syntax;
 
 /// Points as text.
 pub(super) struct Text;
@@ -81,7 +82,7 @@ fn load(
         let factor = layout.columns[column].map_or(1.0, |index| columns[index].factor);
         values.iter_mut().for_each(|value| *value *= factor);
     };
-    let (arrays, tally) = rows::read(source, pieces, columns.len(), &layout, finish, meter)?;
+    let (arrays, tally) = rows::read(source, pieces, Syntax::table(columns.len()), &layout, finish, meter)?;
     meter.finish();
     let points = Points::new(arrays, tally, None)?;
     let report = Report::of_points(Encoding::Ascii, element, &layout, &points);

@@ -6,27 +6,46 @@ use crate::formats::quoted::quoted;
 use crate::formats::source::{Parsed, Source};
 use crate::formats::table::{Arrays, Block, Layout, ROWS, Rows, Tally, fill, text};
 
-/// Reads the points of all pieces, with `count` values each; `finish` gets a used column of the layout, and
-/// its values of some points.
+/// How lines become points.
+#[derive(Clone, Copy)]
+pub struct Syntax {
+    /// Number of values of a point.
+    pub width: usize,
+    /// Whether a line is a point.
+    pub is_row: fn(&[u8]) -> bool,
+    /// Parses the values of a point.
+    pub parse_row: fn(&[u8], &mut [f64]) -> Parsed<()>,
+}
+
+impl Syntax {
+    /// Lines of `width` numbers.
+    pub fn table(width: usize) -> Self {
+        Self { width, is_row: lines::is_row, parse_row }
+    }
+}
+
+/// Reads the points of all pieces; `finish` gets a used column of the layout, and its values of some points.
 pub fn read(
     source: &Source,
     pieces: &[Piece],
-    count: usize,
+    syntax: Syntax,
     layout: &Layout,
     finish: impl Fn(usize, &mut [f64]) + Sync + Send,
     meter: &Meter,
 ) -> Parsed<(Arrays, Tally)> {
     let mut arrays = Arrays::new(pieces.iter().map(|piece| piece.rows as u64).sum(), layout)?;
-    let columns = layout.columns.iter().enumerate();
-    let used: Vec<(usize, usize)> = columns.filter_map(|(column, index)| Some((column, (*index)?))).collect();
+    let used = layout.used();
     let sizes = pieces.iter().map(|piece| piece.rows);
     let tally = fill(&mut arrays, layout, sizes, Vec::new, |buffer, index, rows| {
         let piece = &pieces[index];
         let bytes = source.view(piece.start, piece.length, buffer)?;
-        parse(bytes, piece.line, count, rows, |numbers, block| {
+        parse(bytes, piece.line, syntax, rows, |numbers, block| {
             for &(column, index) in &used {
                 let values = block.column_mut(column);
-                values.iter_mut().zip(numbers.chunks_exact(count)).for_each(|(to, row)| *to = row[index]);
+                values
+                    .iter_mut()
+                    .zip(numbers.chunks_exact(syntax.width))
+                    .for_each(|(to, row)| *to = row[index]);
                 finish(column, values);
             }
         })?;
@@ -35,19 +54,21 @@ pub fn read(
     Ok((arrays, tally))
 }
 
-/// Parses lines of `count` values, of which the first has the number `first`; `give` gets the values of some points.
-fn parse(
+/// Parses lines, of which the first has the number `first`; `give` gets the values of some points.
+pub fn parse(
     bytes: &[u8],
     first: u64,
-    count: usize,
+    Syntax { width, is_row, parse_row }: Syntax,
     rows: &mut Rows,
     give: impl Fn(&[f64], &mut Block),
 ) -> Parsed<()> {
-    let mut lines = lines::of(bytes).zip(first..).filter(|(line, _)| lines::is_row(line));
-    let mut numbers = vec![0.0; count * ROWS];
+    let mut lines = lines::of(bytes).zip(first..).filter(|(line, _)| is_row(line));
+    let mut numbers = vec![0.0; width * ROWS];
     while rows.left() > 0 {
         let next = rows.left().min(ROWS);
-        for (row, (line, number)) in numbers.chunks_exact_mut(count).zip(lines.by_ref().take(next)) {
+        for row in numbers.chunks_exact_mut(width).take(next) {
+            let (line, number) =
+                lines.next().ok_or("empty lines or comments stand between the points: remove them")?;
             parse_row(line, row).map_err(|cause| format!("line {number}: {cause}"))?;
         }
         rows.next(next, |block| give(&numbers, block));
