@@ -22,6 +22,7 @@ pub mod image;
 #[cfg(feature = "las")]
 mod las;
 mod meter;
+mod obj;
 #[cfg(feature = "pcd")]
 mod pcd;
 pub mod ply;

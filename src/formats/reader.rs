@@ -4,7 +4,7 @@ use super::declared::{Element, Encoding};
 use super::filter::Filter;
 use super::report::Report;
 use super::source::{Parsed, Source};
-use super::{ply, ptx, sniff, text};
+use super::{obj, ply, ptx, sniff, text};
 use crate::Progress;
 use crate::error::{Cause, Error, Result};
 use crate::geometry::{Cloud, MipMap};
@@ -40,6 +40,7 @@ static READERS: &[&dyn Reader] = &[
     &super::e57::E57,
     #[cfg(feature = "pcd")]
     &super::pcd::Pcd,
+    &obj::Obj,
     // Before text, of which it is a kind.
     &ptx::Ptx,
     &text::Text,
@@ -181,7 +182,8 @@ mod tests {
         assert_eq!(chosen("a.PLY", b"0 1 2\n"), Ok("text"));
         assert_eq!(chosen("a.PLY", b"solid\n"), Ok("PLY"));
         assert_eq!(chosen("a.ply", b"# .PCD v0.7\n"), Ok("PCD"));
-        assert!(chosen("a.obj", b"v 0 1 2\n").is_err_and(|cause| cause.to_string().contains("OBJ")));
+        assert_eq!(chosen("a.txt", b"v 0 1 2\n"), Ok("OBJ"));
         assert_eq!(chosen("a.xyz", b"1\n1\n0 0 0\n1 0 0\n"), Ok("PTX"));
+        assert!(chosen("a.stl", b"solid\n").is_err_and(|cause| cause.to_string().contains("STL")));
     }
 }

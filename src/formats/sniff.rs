@@ -56,7 +56,7 @@ pub(super) fn name(file: &str, bytes: &[u8], size: u64) -> String {
     match text(beginning) {
         Some(what) => format!("not a point cloud that can be read, but {what}"),
         None => format!(
-            "not a point cloud that can be read: it begins with {}; give a PLY, LAS, LAZ, E57, PCD, PTX or text file",
+            "not a point cloud that can be read: it begins with {}; give a PLY, LAS, LAZ, E57, PCD, PTX, OBJ or text file",
             quoted(line)
         ),
     }
@@ -75,15 +75,9 @@ fn text(beginning: &[u8]) -> Option<&'static str> {
         .split(|byte| *byte == b'\n')
         .find(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#"))?;
     let words: Vec<&str> = std::str::from_utf8(line).ok()?.split_ascii_whitespace().collect();
-    match words.first()? {
-        &"v" | &"vn" | &"vt" | &"o" | &"g" | &"mtllib" | &"usemtl" => {
-            Some("a Wavefront OBJ model: convert it to PLY with normals and radii")
-        }
-        _ if words.iter().all(|word| word.trim_end_matches(',').parse::<f64>().is_ok()) => {
-            Some("a table of fewer than three numbers a line: give x, y and z")
-        }
-        _ => None,
-    }
+    let is_number = |word: &&str| word.trim_end_matches(',').parse::<f64>().is_ok();
+    let is_table = !words.is_empty() && words.iter().all(is_number);
+    is_table.then_some("a table of fewer than three numbers a line: give x, y and z")
 }
 
 #[cfg(test)]
@@ -109,7 +103,6 @@ mod tests {
             (b"\x1f\x8b\x08\0", "gzip"),
             (b"LASF\0\0", "LAS"),
             (b"1.0 2.0\n", "fewer than three numbers"),
-            (b"# made by hand\n\nv 1 2 3\n", "OBJ"),
             (b"<!DOCTYPE html>", "HTML"),
             (b"plyx\nformat", "begins with `plyx`"),
             (b"\0\0\0\0", "begins with `\\x00"),

@@ -2,8 +2,7 @@
 //!
 //! Such scans are height fields over x and y, seen from far along the z axis.
 
-use super::faces::Collector;
-use crate::formats::table::Points;
+use crate::formats::table::{Collector, Points};
 use glam::Vec3;
 
 /// Ratio of an edge's length to the median in its direction from which the surface is considered torn: for evenly spaced samples, where it

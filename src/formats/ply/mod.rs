@@ -44,7 +44,6 @@
 mod ascii;
 mod binary;
 mod elements;
-mod faces;
 mod grid;
 mod header;
 mod lines;

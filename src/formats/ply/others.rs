@@ -1,14 +1,13 @@
 //! Elements other than the vertices.
 
 use super::Parsed;
-use super::faces::Collector;
 use super::grid::Grid;
 use super::lines::{self, Ends, Segments, TUBE};
 use super::materials::{Columns, Table};
 use super::records::{Reader, walk};
 use crate::formats::declared::{Element, Kind};
 use crate::formats::meter::Meter;
-use crate::formats::table::Points;
+use crate::formats::table::{Collector, Points};
 use crate::formats::{Faces, Lines};
 use crate::geometry::{Cloud, View};
 use glam::{DVec3, Vec3};

@@ -153,16 +153,21 @@ fn guess(sample: &[Vec<f64>], count: usize, prefers_colours: bool) -> Vec<String
     names
 }
 
+/// Type of colours by their largest number, and the factor of their numbers.
+pub fn colour(largest: f64) -> (Scalar, f64) {
+    match largest {
+        ..=1.0 => (Scalar::U8, 255.0),
+        ..=255.0 => (Scalar::U8, 1.0),
+        _ => (Scalar::U16, 1.0),
+    }
+}
+
 /// Columns with these names; the type of colours is that of their largest number.
 fn typed(names: Vec<String>, sample: &[Vec<f64>]) -> Vec<Column> {
     let is_colour = |name: &str| matches!(name, "red" | "green" | "blue");
     let channels = || names.iter().enumerate().filter(|(_, name)| is_colour(name)).map(|(column, _)| column);
     let largest = sample.iter().flat_map(|row| channels().map(|column| row[column])).fold(0.0, f64::max);
-    let colour = match largest {
-        ..=1.0 => (Scalar::U8, 255.0),
-        ..=255.0 => (Scalar::U8, 1.0),
-        _ => (Scalar::U16, 1.0),
-    };
+    let colour = colour(largest);
     let column = |name: String| {
         let (scalar, factor) = if is_colour(&name) { colour } else { (Scalar::F64, 1.0) };
         Column { name, scalar, factor }

@@ -59,34 +59,43 @@ pub fn is_row(line: &[u8]) -> bool {
 
 /// Divides the lines from byte `start` on, where line `number` begins, into pieces, and counts their points.
 pub fn pieces(source: &Source, start: u64, number: u64, meter: &Meter) -> Parsed<Vec<Piece>> {
+    let count = |bytes: &[u8]| (of(bytes).filter(|line| is_row(line)).count(), ());
+    Ok(survey(source, start, number, count, meter)?.into_iter().map(|(piece, ())| piece).collect())
+}
+
+/// Divides the lines from byte `start` on, where line `number` begins, into pieces: `look` gets the bytes of each, and returns the number of
+/// its points and what else the caller needs.
+pub fn survey<T: Send>(
+    source: &Source,
+    start: u64,
+    number: u64,
+    look: impl Fn(&[u8]) -> (usize, T) + Sync + Send,
+    meter: &Meter,
+) -> Parsed<Vec<(Piece, T)>> {
     let size = source.size();
     let mut starts = vec![start];
     for nominal in (1..).map(|piece| start + piece * PIECE).take_while(|nominal| *nominal < size) {
         let beyond = source.part(nominal, LONGEST.min(size - nominal))?;
         let end = [b'\n', b'\r'].iter().find_map(|end| beyond.iter().position(|byte| byte == end));
         let end = end.ok_or_else(|| {
-            format!("a line of more than {LONGEST} bytes at byte {nominal}: no table of points")
+            format!("a line of more than {LONGEST} bytes at byte {nominal}: give a text file of points")
         })?;
         starts.push(nominal + end as u64 + 1);
     }
     starts.push(size);
-    let count = |buffer: &mut Vec<u8>, ends: &[u64]| {
+    let one = |buffer: &mut Vec<u8>, ends: &[u64]| {
         let bytes = source.view(ends[0], (ends[1] - ends[0]) as usize, buffer)?;
         meter.add(bytes.len() as u64)?;
-        let all = of(bytes);
-        Ok(Piece {
-            start: ends[0],
-            length: bytes.len(),
-            line: all.clone().count() as u64,
-            rows: all.filter(|line| is_row(line)).count(),
-        })
+        let (rows, other) = look(bytes);
+        let line = of(bytes).count() as u64;
+        Ok((Piece { start: ends[0], length: bytes.len(), line, rows }, other))
     };
-    let counted: Parsed<Vec<Piece>> = starts.par_windows(2).map_init(Vec::new, count).collect();
+    let counted: Parsed<Vec<(Piece, T)>> = starts.par_windows(2).map_init(Vec::new, one).collect();
     let mut line = number;
-    let placed = counted?.into_iter().map(|piece| {
+    let placed = counted?.into_iter().map(|(piece, other)| {
         let first = line;
         line += piece.line;
-        Piece { line: first, ..piece }
+        (Piece { line: first, ..piece }, other)
     });
     Ok(placed.collect())
 }

@@ -7,7 +7,7 @@
 //!
 //! Colours are sRGB-encoded: whole numbers to 255 or 65535, or fractions to 1.
 
-mod columns;
+pub mod columns;
 pub mod lines;
 pub mod rows;
 #[cfg(test)]

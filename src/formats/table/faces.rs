@@ -1,10 +1,10 @@
-//! Triangles from faces and strips.
+//! Triangles from faces, strips and fans.
 
+use super::points::Points;
 use crate::formats::Faces;
-use crate::formats::table::Points;
 
 /// Collects triangles between the points.
-pub(super) struct Collector<'a> {
+pub struct Collector<'a> {
     points: &'a Points,
     keep: bool,
     /// The triangles, if they are kept.

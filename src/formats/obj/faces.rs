@@ -1,0 +1,130 @@
+//! Faces, and the normals of their corners.
+
+use super::survey::{self, keyword};
+use crate::formats::meter::Meter;
+use crate::formats::quoted::quoted;
+use crate::formats::source::{Parsed, Source};
+use crate::formats::table::{Collector, Points};
+use crate::formats::text::lines::{self, Piece};
+use crate::formats::{Faces, source::room};
+use glam::Vec3;
+
+/// Cosine of the largest angle between normals that are the same: exporters write few digits.
+const SAME: f32 = 0.9998;
+
+/// The faces of a file.
+pub struct Found {
+    pub triangles: Vec<[u32; 3]>,
+    pub faces: Faces,
+    /// A normal of each point, or 0; `None` if no corner names one.
+    pub normals: Option<Vec<Vec3>>,
+}
+
+/// Vertices and normals before a line, from which numbers below 0 count.
+#[derive(Clone, Copy, Default)]
+struct Before {
+    vertices: u64,
+    normals: u64,
+}
+
+/// Reads the faces; a corner's normal is one of `normals`.
+pub fn read(
+    source: &Source,
+    pieces: &[Piece],
+    points: &Points,
+    normals: &[Vec3],
+    meter: &Meter,
+) -> Parsed<Found> {
+    let mut collector = Collector::new(points, true);
+    let mut corners = Corners::new(points, normals)?;
+    let (mut before, mut buffer, mut face) = (Before::default(), Vec::new(), Vec::new());
+    for piece in pieces {
+        let bytes = source.view(piece.start, piece.length, &mut buffer)?;
+        for (line, number) in lines::of(bytes).zip(piece.line..) {
+            let Some((word, values)) = keyword(line) else { continue };
+            if word == survey::VERTEX.as_bytes() {
+                before.vertices += 1;
+            } else if word == survey::NORMAL.as_bytes() {
+                before.normals += 1;
+            } else if word == survey::FACE.as_bytes() {
+                face.clear();
+                corners.read(values, before, &mut face).map_err(|cause| format!("line {number}: {cause}"))?;
+                collector.face(&face);
+            }
+        }
+        meter.add(bytes.len() as u64)?;
+    }
+    let normals = corners.finish();
+    Ok(Found { triangles: collector.triangles, faces: collector.faces, normals })
+}
+
+/// Normals of the points, from the corners of faces.
+struct Corners<'a> {
+    points: &'a Points,
+    normals: &'a [Vec3],
+    /// The normal of each point; not finite where corners have different ones.
+    of: Vec<Vec3>,
+}
+
+impl<'a> Corners<'a> {
+    fn new(points: &'a Points, normals: &'a [Vec3]) -> Parsed<Self> {
+        let count = if normals.is_empty() { 0 } else { points.cloud.len() };
+        Ok(Self { points, normals, of: room(count as u64)? })
+    }
+
+    /// Reads the corners of a face: vertices from 0, of which some may not exist.
+    fn read(&mut self, values: &[u8], before: Before, face: &mut Vec<f64>) -> Parsed<()> {
+        for cell in values.split(u8::is_ascii_whitespace).filter(|cell| !cell.is_empty()) {
+            let (vertex, normal) = corner(cell).ok_or_else(|| {
+                format!("{} is not the corner of a face: write the file again", quoted(cell))
+            })?;
+            let vertex = index(vertex, before.vertices);
+            let named = normal.map(|number| index(number, before.normals));
+            let normal = named.and_then(|index| self.normals.get(usize::try_from(index).ok()?)).copied();
+            self.give(vertex as f64, normal.unwrap_or_default());
+            face.push(vertex as f64);
+        }
+        Ok(())
+    }
+
+    fn give(&mut self, vertex: f64, normal: Vec3) {
+        let point = self.points.of_vertex(vertex).filter(|_| normal != Vec3::ZERO);
+        if let Some(own) = point.and_then(|point| self.of.get_mut(point as usize)) {
+            if *own == Vec3::ZERO {
+                *own = normal;
+            } else if own.dot(normal) < SAME {
+                *own = Vec3::NAN;
+            }
+        }
+    }
+
+    fn finish(mut self) -> Option<Vec<Vec3>> {
+        let is_named = self.of.iter().any(|normal| *normal != Vec3::ZERO);
+        self.of.iter_mut().filter(|normal| normal.is_nan()).for_each(|normal| *normal = Vec3::ZERO);
+        is_named.then_some(self.of)
+    }
+}
+
+/// The numbers of vertex and normal of a corner, written v, v/vt, v/vt/vn or v//vn.
+fn corner(cell: &[u8]) -> Option<(i64, Option<i64>)> {
+    let text = std::str::from_utf8(cell).ok()?;
+    let mut numbers = text.split('/');
+    let vertex = numbers.next()?.parse().ok()?;
+    let mut optional = || match numbers.next() {
+        None | Some("") => Some(None),
+        Some(number) => Some(Some(number.parse().ok()?)),
+    };
+    let (_, normal): (Option<i64>, _) = (optional()?, optional()?);
+    numbers.next().is_none().then_some((vertex, normal))
+}
+
+/// The index from 0 of a number from 1, or backwards from −1; one that does not exist is below 0 or too large.
+fn index(number: i64, before: u64) -> i64 {
+    if number > 0 {
+        number - 1
+    } else if number < 0 {
+        number.saturating_add_unsigned(before)
+    } else {
+        -1
+    }
+}

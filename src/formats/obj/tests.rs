@@ -1,0 +1,103 @@
+//! Models from text, and damage.
+
+use super::*;
+use crate::formats::read_bytes;
+use crate::geometry::{Colours, srgb};
+use crate::settings::Lighting;
+use glam::{DVec3, Vec3};
+
+fn read(text: &str) -> crate::Result<Loaded> {
+    read_bytes("a.obj", text.as_bytes(), &ReadOptions::default())
+}
+
+/// A unit square.
+const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+#[test]
+fn points_alone_keep_every_digit_and_their_colours() {
+    let text = "# points\nv 500000.125 4000000.25 7 1 0 0.5\nv 500001.125 4000001.25 8.5 0 0.2 1 1\np 1 2\n";
+    let Loaded { cloud, report } = read(text).unwrap();
+    let at: Vec<DVec3> = cloud.positions.iter().map(|at| cloud.origin + at.as_dvec3()).collect();
+    assert_eq!(at, [DVec3::new(500_000.125, 4_000_000.25, 7.0), DVec3::new(500_001.125, 4_000_001.25, 8.5)]);
+    assert_eq!(cloud.colours, Some(Colours::Srgb8(vec![[255, 0, 128, 0], [0, 51, 255, 0]])));
+    assert_eq!((cloud.normals, cloud.triangles), (None, vec![]));
+    assert_eq!(
+        (report.understood.join(" "), report.skipped_elements),
+        ("x y z red green blue".into(), vec![])
+    );
+}
+
+#[test]
+fn colours_are_whole_numbers_or_fractions_and_may_be_missing() {
+    let colours = |text: &str| read(text).unwrap().cloud.colours.unwrap();
+    let albedo = Lighting::default().albedo.map(srgb::encode8);
+    let [r, g, b] = albedo;
+    assert_eq!(
+        colours("v 0 0 0 1 0 0\nv 1 0 0\nv 2 0 0 200 1 0\n"),
+        Colours::Srgb8(vec![[1, 0, 0, 0], [r, g, b, 0], [200, 1, 0, 0]])
+    );
+    let Colours::Linear(deep) = colours("v 0 0 0 65535 0 256\nv 1 0 0\n") else { panic!() };
+    let exact = albedo.map(|code| srgb::decode(f64::from(code) / 255.0) as f32);
+    assert_eq!((deep[0][0], deep[0][1]), (1.0, 0.0));
+    assert!(Vec3::from(deep[1]).abs_diff_eq(exact.into(), 1e-6), "{deep:?}");
+}
+
+#[test]
+fn polygons_become_triangles_with_numbers_from_the_front_or_the_back() {
+    let text = format!(
+        "mtllib a.mtl\n{SQUARE}vt 0 0\nf 1/1 2/1 3/1 4/1\nv 2 2 2\nf -5 -4 -1\nf 1 2 9\nf 0 1 2\nf 1 1 2\n"
+    );
+    let Loaded { cloud, report } = read(&text).unwrap();
+    assert_eq!(cloud.triangles, [[0, 1, 2], [0, 2, 3], [0, 1, 4]]);
+    assert_eq!((report.faces.understood, report.faces.skipped), (2, 3));
+    assert_eq!(report.skipped_elements, ["mtllib", "vt"]);
+    assert!(report.texture_missing.is_some_and(|text| text.contains("bake")));
+    let windows = read(&text.replace('\n', "\r\n")).unwrap();
+    assert_eq!(windows.cloud, cloud);
+}
+
+#[test]
+fn vertices_have_the_normal_on_which_their_corners_agree() {
+    let corners = "vn 0 0 2\nvn 0 0 1\nvn 1 0 0\nf 1//1 2//1 3//1\nf 1/7/2 3//-3 4//3\nf 1//3 4//3 2//2\n";
+    let normals = read(&format!("{SQUARE}{corners}")).unwrap().cloud.normals.unwrap();
+    assert_eq!(normals, [Vec3::ZERO, Vec3::Z, Vec3::Z, Vec3::X], "those of the first vertex differ");
+    let after = read(&format!("{SQUARE}f 1//1 2//1 3//1\nvn 0 3 0\n")).unwrap().cloud.normals.unwrap();
+    assert_eq!(after, [Vec3::Y, Vec3::Y, Vec3::Y, Vec3::ZERO]);
+}
+
+#[test]
+fn as_many_normals_as_vertices_are_theirs_without_corners_that_name_some() {
+    let points = "v 0 0 0\nvn 0 0 1\nv nan 0 0\nvn 0 1 0\nv 1 0 0\nvn -4 0 0\n";
+    let Loaded { cloud, report } = read(points).unwrap();
+    assert_eq!((cloud.normals, report.dropped.position), (Some(vec![Vec3::Z, -Vec3::X]), 1));
+    assert_eq!(read(&points.replace("vn 0 1 0\n", "")).unwrap().cloud.normals, None);
+}
+
+#[test]
+fn a_model_is_distinguished_from_a_table() {
+    let is = |text: &str| survey::is_obj(text.as_bytes());
+    assert!(is("# Blender\n\nmtllib a.mtl\n") && is("v 1 2 3\n") && is("o thing\nv") && is("\tvn 0 0 1"));
+    assert!(!is("1 2 3\n") && !is("") && !is("# x y z\n") && !is("v\n") && !is("vertex 1 2 3\n"));
+}
+
+#[test]
+fn faults_are_named_with_their_lines() {
+    let cases = [
+        ("v 0 0 0\nv 1 2\n".to_owned(), "line 2: a vertex of 2 numbers"),
+        ("v 0 0 0\nv 1 2 3 4 5\n".to_owned(), "line 2: a vertex of 5 numbers"),
+        ("v 0 0 0\nv 1 x 3\n".to_owned(), "line 2: `x` is not a number"),
+        (format!("{SQUARE}vn 1 0\nf 1 2 3\n"), "line 5: a normal of 2 numbers"),
+        (format!("{SQUARE}f 1 2 3/4/5/6\n"), "line 5: `3/4/5/6` is not the corner of a face"),
+        (format!("{SQUARE}f 1 2 99999999999999999999\n"), "is not the corner of a face"),
+        (format!("{SQUARE}f 1 2 \\\n3\n"), "line 5: `\\\\` is not the corner"),
+        ("o empty\n".to_owned(), "it has no points"),
+        ("v nan 0 0\n".to_owned(), "none of its 1 points has a finite position"),
+    ];
+    for (text, expected) in cases {
+        let cause = read(&text).unwrap_err().to_string();
+        assert!(cause.contains(expected), "{text:?}: {cause}");
+    }
+    // Corners of such numbers do not exist.
+    let far = read(&format!("{SQUARE}f 1 2 9223372036854775807\nf 1 2 -9223372036854775808\n")).unwrap();
+    assert_eq!(far.report.faces.skipped, 2);
+}
