@@ -2,6 +2,7 @@
 
 use super::declared::{Element, Encoding};
 use super::table::{Layout, Points, Shape};
+use glam::DVec3;
 
 /// Result of reading a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,8 +12,8 @@ pub struct Report {
     pub encoding: Encoding,
     /// Facts that only this format tells, by name: its version, the coordinate system, where the points come from.
     pub details: Vec<(String, String)>,
-    /// Whether z is up in all files of this format.
-    pub z_up: bool,
+    /// The up direction of all files of this kind, a unit vector; `None` if the points tell it.
+    pub up: Option<DVec3>,
     /// All declared elements, in order.
     pub elements: Vec<Element>,
     /// Name of the property that is [`Cloud::scalar`](crate::geometry::Cloud::scalar).
@@ -57,7 +58,7 @@ impl Report {
         Self {
             encoding,
             details: Vec::new(),
-            z_up: false,
+            up: None,
             scalar: layout.scalar_of(element).map(str::to_owned),
             elements: vec![element.clone()],
             understood: names(true),

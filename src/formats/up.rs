@@ -8,10 +8,10 @@ use glam::DVec3;
 const FLAT: f32 = 0.25;
 
 impl Loaded {
-    /// The up direction: z in formats of surveying, and of bare points that are wide and flat along z, as lidar scans of the ground;
-    /// otherwise y.
+    /// The up direction: that of the format, as z of surveying; otherwise z of bare points that are wide and flat along z, as lidar scans of
+    /// the ground, and y of all others.
     pub fn up(&self) -> DVec3 {
-        if self.report.z_up || is_flat(&self.cloud) { DVec3::Z } else { DVec3::Y }
+        self.report.up.unwrap_or(if is_flat(&self.cloud) { DVec3::Z } else { DVec3::Y })
     }
 }
 

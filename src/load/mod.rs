@@ -95,8 +95,7 @@ pub struct LoadedModel {
     pub dropped: Dropped,
     /// Where normals and radii come from.
     pub estimated: Estimated,
-    /// The up direction, a unit vector: the requested one, or z for formats of surveying and for wide, flat points without normals and faces,
-    /// otherwise y.
+    /// The up direction, a unit vector: the requested one, otherwise that of the first input, as [`Loaded::up`].
     pub up: DVec3,
     /// What the points were coloured by; `None` for their own colours.
     pub coloured: Option<Coloured>,

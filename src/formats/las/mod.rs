@@ -88,7 +88,7 @@ fn load(table: &read::Table, encoding: Encoding, progress: &dyn Progress) -> Par
     let points = Points::new(arrays, tally, table.layout.origin)?;
     let report = Report {
         details: details::of(table.header),
-        z_up: true,
+        up: Some(glam::DVec3::Z),
         ..Report::of_points(encoding, table.element, table.layout, &points)
     };
     let cloud = Cloud { colours: points.cloud.colours.and_then(colours), ..points.cloud };

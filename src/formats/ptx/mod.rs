@@ -119,7 +119,7 @@ fn load(
     let points = Points::new(arrays, tally, None)?;
     let report = Report {
         details: details(scans),
-        z_up: true,
+        up: Some(DVec3::Z),
         ..Report::of_points(Encoding::Ascii, element, &layout, &points)
     };
     let view = view(scans, points.cloud.origin);

@@ -42,7 +42,7 @@ fn scans_are_in_the_coordinates_of_the_file_without_misses() {
             cloud.colours,
             Some(Colours::Srgb8(vec![[255, 0, 7, 0], [0, 255, 8, 0], [1, 2, 3, 0], black]))
         );
-        assert_eq!((cloud.view, report.z_up), (View::Unknown, true));
+        assert_eq!((cloud.view, report.up), (View::Unknown, Some(DVec3::Z)));
         let details: Vec<_> = report.details.iter().map(|(name, value)| format!("{name}: {value}")).collect();
         let expected = [
             "scans: 2",
