@@ -18,6 +18,8 @@ pub mod declared;
 #[cfg(feature = "e57")]
 mod e57;
 mod filter;
+#[cfg(feature = "gltf")]
+mod gltf;
 pub mod image;
 #[cfg(feature = "las")]
 mod las;

@@ -40,6 +40,8 @@ static READERS: &[&dyn Reader] = &[
     &super::e57::E57,
     #[cfg(feature = "pcd")]
     &super::pcd::Pcd,
+    #[cfg(feature = "gltf")]
+    &super::gltf::Gltf,
     &obj::Obj,
     // Before text, of which it is a kind.
     &ptx::Ptx,

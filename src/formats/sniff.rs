@@ -14,7 +14,7 @@ const KNOWN: &[(&[u8], &str)] = &[
     (b"LASF", "a LAS or LAZ point cloud: build with the feature `las`, or convert it to PLY"),
     (b"ASTM-E57", "an E57 point cloud: build with the feature `e57`, or convert it to PLY"),
     (b"# .PCD", "a PCD point cloud: build with the feature `pcd`, or convert it to PLY"),
-    (b"glTF", "a binary glTF model: convert it to PLY"),
+    (b"glTF", "a binary glTF model: build with the feature `gltf`, or convert it to PLY"),
     (b"DRACO", "a Draco file: convert it to PLY"),
     (b"solid", "an STL mesh: convert it to PLY with normals and radii"),
     (b"OFF", "an OFF mesh: convert it to PLY with normals and radii"),
@@ -56,7 +56,7 @@ pub(super) fn name(file: &str, bytes: &[u8], size: u64) -> String {
     match text(beginning) {
         Some(what) => format!("not a point cloud that can be read, but {what}"),
         None => format!(
-            "not a point cloud that can be read: it begins with {}; give a PLY, LAS, LAZ, E57, PCD, PTX, OBJ or text file",
+            "not a point cloud that can be read: it begins with {}; give a PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF or text file",
             quoted(line)
         ),
     }

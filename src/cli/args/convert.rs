@@ -11,7 +11,7 @@ use surfel::geometry::ToLines;
 /// Options of `surfel convert`.
 #[derive(Args, Debug)]
 pub struct Convert {
-    /// PLY, LAS, LAZ, E57, PCD, PTX, OBJ or text files, or built-in scenes such as scene:bumpy-sphere; several become one file
+    /// PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF or text files, or built-in scenes such as scene:bumpy-sphere; several become one file
     #[arg(required = true, value_name = "INPUT")]
     pub inputs: Vec<OsString>,
     /// The binary PLY file to write
@@ -72,7 +72,7 @@ impl Convert {
 /// Options of `surfel info`.
 #[derive(Args, Debug)]
 pub struct Info {
-    /// A PLY, LAS, LAZ, E57, PCD, PTX, OBJ or text file, or a built-in scene such as scene:bumpy-sphere
+    /// A PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF or text file, or a built-in scene such as scene:bumpy-sphere
     pub input: OsString,
     /// How normals and radii are estimated
     #[command(flatten)]

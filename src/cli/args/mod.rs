@@ -126,7 +126,7 @@ pub struct Man {
 /// Options of `surfel render`.
 #[derive(Args, Debug)]
 pub struct Render {
-    /// PLY, LAS, LAZ, E57, PCD, PTX, OBJ or text files, or built-in scenes such as scene:bumpy-sphere; several become one scene
+    /// PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF or text files, or built-in scenes such as scene:bumpy-sphere; several become one scene
     #[arg(required = true, value_name = "INPUT")]
     pub inputs: Vec<OsString>,
     /// The picture: .png (sRGB, or `-` for standard output) or .exr (linear light)

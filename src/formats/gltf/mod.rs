@@ -1,0 +1,182 @@
+//! glTF 2.0 reader: text or binary, with buffers inside or beside the file.
+//!
+//! The points and triangles (also strips and fans) of the default scene become one model, in the scene's coordinates: the transformations of
+//! nodes are multiplied in float64. Up is y, the unit is the metre. Vertices that the indices of a primitive leave out are left out.
+//!
+//! | attribute | becomes |
+//! |---|---|
+//! | `POSITION` | position; integers are those of KHR_mesh_quantization |
+//! | `NORMAL` | normal, of any length |
+//! | `COLOR_0` | colour, linear light, times the material's `baseColorFactor` |
+//!
+//! Lines, textures, morph targets and skins are not read. A required extension that changes the geometry is an error.
+//!
+//! The schema is the engine's own, because that of the crate `gltf` rounds the transformations of nodes to f32.
+//!
+//! Source: Khronos Group, glTF 2.0 specification (ISO/IEC 12113:2022).
+
+mod accessor;
+mod container;
+mod part;
+mod scene;
+mod schema;
+#[cfg(test)]
+mod tests;
+
+use super::declared::{Element, Encoding, Kind, Property, Scalar};
+use super::meter::Meter;
+use super::quoted::on_one_line;
+use super::reader::{Input, Reader};
+use super::source::Parsed;
+use super::table::{Arrays, Collector, Layout, Points, ROWS, fill};
+use super::{Faces, Inspected, Loaded, ReadOptions, Report, sniff};
+use crate::Progress;
+use crate::error::Cause;
+use accessor::Contents;
+use glam::DVec3;
+use part::{Part, Parts};
+use schema::Document;
+
+/// The glTF format.
+pub(super) struct Gltf;
+
+/// Number of vertices that a thread reads at once.
+const PIECE: usize = 64 * ROWS;
+
+impl Reader for Gltf {
+    fn name(&self) -> &'static str {
+        "glTF"
+    }
+
+    fn extensions(&self) -> &'static [&'static str] {
+        &["gltf", "glb"]
+    }
+
+    fn knows(&self, beginning: &[u8]) -> Option<bool> {
+        container::is_gltf(beginning)
+    }
+
+    fn inspect(
+        &self,
+        input: &Input<'_>,
+        options: &ReadOptions,
+        progress: &dyn Progress,
+    ) -> Parsed<Inspected<Cause>> {
+        let source = &input.source;
+        let beginning = source.beginning()?;
+        if container::is_gltf(&beginning) == Some(false) {
+            return Err(sniff::name(input.name, &beginning, source.size()).into());
+        }
+        let document = container::document(source)?;
+        scene::check_extensions(&document)?;
+        let buffers = container::buffers(input, &document)?;
+        let contents = Contents { document: &document, buffers: &buffers };
+        let parts = Parts::of(&contents, &scene::primitives(&document)?)?;
+        let model = Model::of(&document, parts);
+        let loaded = model.load(options, progress);
+        Ok(Inspected {
+            format: self.name(),
+            encoding: Encoding::BinaryLittleEndian,
+            elements: model.elements,
+            loaded,
+        })
+    }
+}
+
+/// The parts of a scene, and what they have.
+struct Model<'a> {
+    document: &'a Document,
+    parts: Parts<'a>,
+    /// The vertices first.
+    elements: Vec<Element>,
+    /// Which value of a vertex each property is.
+    slots: Vec<usize>,
+}
+
+impl<'a> Model<'a> {
+    fn of(document: &'a Document, parts: Parts<'a>) -> Self {
+        let narrow = parts.all.iter().all(Part::is_narrow);
+        let mut properties = Vec::new();
+        let mut slots = Vec::new();
+        let mut push = |first: usize, names: [&str; 3], scalar: Scalar| {
+            properties.extend(names.map(|name| Property { name: name.into(), kind: Kind::Scalar(scalar) }));
+            slots.extend(first..first + 3);
+        };
+        push(0, ["x", "y", "z"], if narrow { Scalar::F32 } else { Scalar::F64 });
+        if parts.all.iter().any(Part::has_normals) {
+            push(3, ["nx", "ny", "nz"], Scalar::F32);
+        }
+        if parts.all.iter().any(Part::has_colours) {
+            push(6, ["red", "green", "blue"], Scalar::F32);
+        }
+        let count = parts.all.iter().map(|part| part.len() as u64).sum();
+        let element = |name: &str, count, properties| Element { name: name.into(), count, properties };
+        let mut elements = vec![element("vertex", count, properties)];
+        if parts.lines > 0 {
+            elements.push(element("lines", parts.lines, Vec::new()));
+        }
+        Self { document, parts, elements, slots }
+    }
+
+    fn load(&self, options: &ReadOptions, progress: &dyn Progress) -> Parsed<Loaded> {
+        let vertices = &self.elements[0];
+        let layout = Layout::of(vertices, options, false)?;
+        let meter = Meter::new(progress, vertices.count);
+        let mut points = self.read(&layout, &meter)?;
+        meter.finish();
+        let (triangles, faces) = self.faces(&points, options);
+        points.cloud.triangles = triangles;
+        let textured = self.document.materials.iter().any(|material| material.is_textured());
+        let version = ("version", Some(&self.document.asset.version));
+        let details = [version, ("generator", self.document.asset.generator.as_ref())];
+        let detail = |(name, value): (&str, Option<&String>)| Some((name.to_owned(), on_one_line(value?)));
+        let report = Report {
+            details: details.into_iter().filter_map(detail).collect(),
+            up: Some(DVec3::Y),
+            elements: self.elements.clone(),
+            skipped_elements: self.elements[1..].iter().map(|element| element.name.clone()).collect(),
+            faces,
+            texture_missing: textured.then(|| {
+                "textures of glTF are not read: bake them into the colours of the vertices (COLOR_0)".into()
+            }),
+            ..Report::of_points(Encoding::BinaryLittleEndian, vertices, &layout, &points)
+        };
+        Ok(Loaded { cloud: points.cloud, report })
+    }
+
+    fn read(&self, layout: &Layout, meter: &Meter) -> Parsed<Points> {
+        let mut arrays = Arrays::new(self.elements[0].count, layout)?;
+        let used: Vec<(usize, usize)> =
+            layout.used().into_iter().map(|(column, index)| (column, self.slots[index])).collect();
+        let pieces: Vec<(&Part, usize)> = self
+            .parts
+            .all
+            .iter()
+            .flat_map(|part| (0..part.len()).step_by(PIECE).map(move |first| (part, first)))
+            .collect();
+        let sizes = pieces.iter().map(|(part, first)| PIECE.min(part.len() - first));
+        let tally = fill(&mut arrays, layout, sizes, Vec::new, |values, index, rows| {
+            let (part, mut next) = pieces[index];
+            let count = rows.left();
+            while rows.left() > 0 {
+                let first = next;
+                next += rows.left().min(ROWS);
+                values.clear();
+                values.extend((first..next).map(|rank| part.values(rank)));
+                rows.next(values.len(), |block| block.fill(&used, values));
+            }
+            meter.add(count as u64)
+        })?;
+        Points::new(arrays, tally, None)
+    }
+
+    fn faces(&self, points: &Points, options: &ReadOptions) -> (Vec<[u32; 3]>, Faces) {
+        let mut collector = Collector::new(points, points.lacking || options.triangles);
+        let mut first = 0;
+        for part in &self.parts.all {
+            part.add_faces(first, &mut collector);
+            first += part.len();
+        }
+        (collector.triangles, collector.faces)
+    }
+}
