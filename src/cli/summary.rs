@@ -37,7 +37,9 @@ pub struct Given {
 /// What was assumed of inputs that do not tell, a line each: the up direction, colours, and shading.
 pub fn assumptions(input: &Path, given: Given, loaded: &LoadedModel) -> Vec<String> {
     let name = input.display();
-    let up = (!given.up && loaded.up == DVec3::Z).then(|| format!("{name}: z is up: --up 0,1,0 makes it y"));
+    let axis = [(DVec3::Z, "z"), (DVec3::NEG_Y, "-y")].into_iter().find(|(up, _)| *up == loaded.up);
+    let up =
+        axis.filter(|_| !given.up).map(|(_, axis)| format!("{name}: {axis} is up: --up 0,1,0 makes it y"));
     let colours = loaded.suggestion.as_ref().map(|suggestion| {
         format!(
             "{name}: no colours, so coloured by {}: --color-by file leaves the points plain",

@@ -18,6 +18,7 @@ pub mod declared;
 #[cfg(feature = "e57")]
 mod e57;
 mod filter;
+mod gaussians;
 #[cfg(feature = "gltf")]
 mod gltf;
 pub mod image;
@@ -34,6 +35,7 @@ mod reader;
 mod report;
 mod sniff;
 mod source;
+mod splat;
 mod table;
 mod text;
 mod up;

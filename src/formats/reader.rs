@@ -4,7 +4,7 @@ use super::declared::{Element, Encoding};
 use super::filter::Filter;
 use super::report::Report;
 use super::source::{Parsed, Source};
-use super::{obj, ply, ptx, sniff, text};
+use super::{obj, ply, ptx, sniff, splat, text};
 use crate::Progress;
 use crate::error::{Cause, Error, Result};
 use crate::geometry::{Cloud, MipMap};
@@ -43,6 +43,7 @@ static READERS: &[&dyn Reader] = &[
     #[cfg(feature = "gltf")]
     &super::gltf::Gltf,
     &obj::Obj,
+    &splat::Splat,
     // Before text, of which it is a kind.
     &ptx::Ptx,
     &text::Text,
@@ -185,6 +186,7 @@ mod tests {
         assert_eq!(chosen("a.PLY", b"solid\n"), Ok("PLY"));
         assert_eq!(chosen("a.ply", b"# .PCD v0.7\n"), Ok("PCD"));
         assert_eq!(chosen("a.txt", b"v 0 1 2\n"), Ok("OBJ"));
+        assert_eq!(chosen("a.splat", &[0; 32]), Ok("SPLAT"));
         assert_eq!(chosen("a.xyz", b"1\n1\n0 0 0\n1 0 0\n"), Ok("PTX"));
         assert!(chosen("a.stl", b"solid\n").is_err_and(|cause| cause.to_string().contains("STL")));
     }

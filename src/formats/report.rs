@@ -55,10 +55,12 @@ impl Report {
                 .map(|(_, property)| property.name.clone())
                 .collect()
         };
+        let gaussians = matches!(layout.shape, Shape::Gaussian(_));
         Self {
             encoding,
             details: Vec::new(),
-            up: None,
+            // That of the cameras which 3D Gaussians are trained with.
+            up: gaussians.then_some(DVec3::NEG_Y),
             scalar: layout.scalar_of(element).map(str::to_owned),
             elements: vec![element.clone()],
             understood: names(true),
@@ -71,7 +73,7 @@ impl Report {
             materials_dropped: 0,
             faces: Faces::default(),
             lines: Lines::default(),
-            gaussians: matches!(layout.shape, Shape::Gaussian(_)),
+            gaussians,
             texture_missing: None,
             trailing: 0,
         }

@@ -8,8 +8,8 @@ use glam::DVec3;
 const FLAT: f32 = 0.25;
 
 impl Loaded {
-    /// The up direction: that of the format, as z of surveying; otherwise z of bare points that are wide and flat along z, as lidar scans of
-    /// the ground, and y of all others.
+    /// The up direction: z in formats of surveying, y in glTF and SPZ, −y of other 3D Gaussians; otherwise z of bare points that are wide and
+    /// flat along z, as lidar scans of the ground, and y of all others.
     pub fn up(&self) -> DVec3 {
         self.report.up.unwrap_or(if is_flat(&self.cloud) { DVec3::Z } else { DVec3::Y })
     }

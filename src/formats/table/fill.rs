@@ -112,7 +112,7 @@ impl Records<'_> {
 }
 
 /// Each filled column with its offset in a record, bytes, and its type.
-fn fields(element: &Element, layout: &Layout) -> Vec<(usize, usize, Scalar)> {
+pub fn fields(element: &Element, layout: &Layout) -> Vec<(usize, usize, Scalar)> {
     let mut offset = 0;
     let mut all = Vec::new();
     for property in &element.properties {

@@ -20,7 +20,7 @@ pub use arrays::Arrays;
 pub use block::{Block, ROWS};
 pub use convert::{Tally, convert, linear};
 pub use faces::Collector;
-pub use fill::{Records, Rows, fill};
+pub use fill::{Records, Rows, fields, fill};
 pub use layout::{Layout, Shape, is_colour};
 pub use points::Points;
 pub use shape::unit;
