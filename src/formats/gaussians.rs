@@ -6,6 +6,8 @@
 pub const SCALES: [&str; 3] = ["scale_0", "scale_1", "scale_2"];
 /// Rotation, real part first.
 pub const ROTATION: [&str; 4] = ["rot_0", "rot_1", "rot_2", "rot_3"];
+/// Constant spherical harmonics of the colour.
+pub const HARMONICS: [&str; 3] = ["f_dc_0", "f_dc_1", "f_dc_2"];
 /// Logit of the opacity.
 pub const OPACITY: &str = "opacity";
 

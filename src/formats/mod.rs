@@ -36,6 +36,7 @@ mod report;
 mod sniff;
 mod source;
 mod splat;
+mod spz;
 mod table;
 mod text;
 mod up;

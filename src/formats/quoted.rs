@@ -24,7 +24,6 @@ pub fn quoted(bytes: &[u8]) -> String {
 }
 
 /// A message of another library on one line, without control characters.
-#[cfg(any(feature = "e57", feature = "gltf"))]
 pub fn on_one_line(message: &str) -> String {
     message.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }

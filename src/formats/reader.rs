@@ -4,7 +4,7 @@ use super::declared::{Element, Encoding};
 use super::filter::Filter;
 use super::report::Report;
 use super::source::{Parsed, Source};
-use super::{obj, ply, ptx, sniff, splat, text};
+use super::{obj, ply, ptx, sniff, splat, spz, text};
 use crate::Progress;
 use crate::error::{Cause, Error, Result};
 use crate::geometry::{Cloud, MipMap};
@@ -44,6 +44,7 @@ static READERS: &[&dyn Reader] = &[
     &super::gltf::Gltf,
     &obj::Obj,
     &splat::Splat,
+    &spz::Spz,
     // Before text, of which it is a kind.
     &ptx::Ptx,
     &text::Text,

@@ -30,7 +30,6 @@ const KNOWN: &[(&[u8], &str)] = &[
 /// Extensions of binary formats without a signature, or with that of their container.
 const EXTENSIONS: &[(&str, &str)] = &[
     ("ksplat", "3D Gaussians (.ksplat): convert them to PLY"),
-    ("spz", "3D Gaussians (.spz): convert them to PLY"),
     ("sog", "3D Gaussians (.sog): convert them to PLY"),
 ];
 
@@ -55,7 +54,7 @@ pub(super) fn name(file: &str, bytes: &[u8], size: u64) -> String {
     match text(beginning) {
         Some(what) => format!("not a point cloud that can be read, but {what}"),
         None => format!(
-            "not a point cloud that can be read: it begins with {}; give a PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, SPLAT or text file",
+            "not a point cloud that can be read: it begins with {}; give a PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, SPLAT, SPZ or text file",
             quoted(line)
         ),
     }

@@ -3,7 +3,7 @@
 use crate::error::{Cause, Error, Result};
 use std::borrow::Cow;
 use std::fs::File;
-use std::io::{self, ErrorKind, Read};
+use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
 use std::path::Path;
 
 /// A result whose error does not name the file yet.
@@ -87,6 +87,41 @@ impl<'a> Source<'a> {
             _ => Err(ErrorKind::Unsupported.into()),
         };
         done.map_err(|error| format!("cannot read {} bytes at byte {start}: {error}", to.len()).into())
+    }
+}
+
+/// The contents of a file as a stream.
+pub struct Stream<'a> {
+    source: &'a Source<'a>,
+    at: u64,
+}
+
+impl<'a> Stream<'a> {
+    /// Starts at the first byte.
+    pub fn new(source: &'a Source<'a>) -> Self {
+        Self { source, at: 0 }
+    }
+}
+
+impl Read for Stream<'_> {
+    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+        let length = self.source.size().saturating_sub(self.at).min(to.len() as u64);
+        let part = self.source.part(self.at, length).map_err(|cause| io::Error::other(cause.to_string()))?;
+        to[..part.len()].copy_from_slice(&part);
+        self.at += length;
+        Ok(part.len())
+    }
+}
+
+impl Seek for Stream<'_> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let at = match to {
+            SeekFrom::Start(at) => Some(at),
+            SeekFrom::End(by) => self.source.size().checked_add_signed(by),
+            SeekFrom::Current(by) => self.at.checked_add_signed(by),
+        };
+        self.at = at.ok_or(ErrorKind::InvalidInput)?;
+        Ok(self.at)
     }
 }
 

@@ -17,7 +17,7 @@ use super::declared::{Element, Encoding};
 use super::meter::Meter;
 use super::quoted::on_one_line;
 use super::reader::{Input, Reader};
-use super::source::{Parsed, Source};
+use super::source::{Parsed, Source, Stream};
 use super::table::{Arrays, Layout, Points, fill};
 use super::{Inspected, Loaded, ReadOptions, Report, sniff};
 use crate::Progress;
@@ -26,7 +26,6 @@ use crate::geometry::{Cloud, View};
 use e57::{E57Reader, PointCloud};
 use glam::DVec3;
 use scan::Scan;
-use std::io::{self, Read, Seek, SeekFrom};
 
 /// The E57 format.
 pub(super) struct E57;
@@ -80,7 +79,7 @@ fn refuse_description(beginning: &[u8], size: u64) -> Parsed<()> {
 }
 
 fn open<'a>(source: &'a Source<'a>) -> Parsed<E57Reader<Stream<'a>>> {
-    E57Reader::new(Stream { source, at: 0 }).map_err(cause)
+    E57Reader::new(Stream::new(source)).map_err(cause)
 }
 
 fn load(
@@ -120,34 +119,6 @@ fn load(
     };
     let view = view(scans, points.cloud.origin);
     Ok(Loaded { cloud: Cloud { view, ..points.cloud }, report })
-}
-
-/// The contents of a file as a stream.
-struct Stream<'a> {
-    source: &'a Source<'a>,
-    at: u64,
-}
-
-impl Read for Stream<'_> {
-    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
-        let length = self.source.size().saturating_sub(self.at).min(to.len() as u64);
-        let part = self.source.part(self.at, length).map_err(|cause| io::Error::other(cause.to_string()))?;
-        to[..part.len()].copy_from_slice(&part);
-        self.at += length;
-        Ok(part.len())
-    }
-}
-
-impl Seek for Stream<'_> {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        let at = match to {
-            SeekFrom::Start(at) => Some(at),
-            SeekFrom::End(by) => self.source.size().checked_add_signed(by),
-            SeekFrom::Current(by) => self.at.checked_add_signed(by),
-        };
-        self.at = at.ok_or(io::ErrorKind::InvalidInput)?;
-        Ok(self.at)
-    }
 }
 
 fn cause(error: e57::Error) -> Cause {
