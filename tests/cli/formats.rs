@@ -1,6 +1,9 @@
 //! Formats other than PLY, and what their points look like without options, tested with the reference, which needs no device.
 
 use crate::program::Program;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::json;
 
 /// A camera from above whose picture is 4 units high at the origin.
 const ABOVE: &str =
@@ -25,6 +28,65 @@ fn every_format_becomes_a_picture() {
         run.text();
         assert!(program.png("out.png").pixels().any(|pixel| pixel[3] > 0), "{name}");
     }
+}
+
+/// A glTF square in the plane z = 0, as a strip.
+fn square() -> String {
+    let corners = [[-1f32, -1.0, 0.0], [1.0, -1.0, 0.0], [-1.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+    let bytes: Vec<u8> = corners.iter().flatten().flat_map(|value| value.to_le_bytes()).collect();
+    let buffer = json!({"byteLength": 48, "uri": format!("data:;base64,{}", STANDARD.encode(bytes))});
+    let accessor = json!({"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"});
+    let document = json!({
+        "asset": {"version": "2.0"}, "nodes": [{"mesh": 0}], "buffers": [buffer], "accessors": [accessor],
+        "bufferViews": [{"buffer": 0, "byteLength": 48}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "mode": 5}]}],
+    });
+    document.to_string()
+}
+
+/// A Gaussian of SPLAT in the plane z = 0.
+fn gaussian(x: f32, y: f32, opacity: u8) -> Vec<u8> {
+    let floats = [x, y, 0.0, 0.1, 0.1, 0.001].into_iter().flat_map(f32::to_le_bytes);
+    floats.chain([200, 100, 50, opacity, 255, 128, 128, 128]).collect()
+}
+
+#[test]
+fn scans_models_and_gaussians_become_pictures() {
+    let program = Program::new();
+    let header = "21\n21\n0 0 9\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+    program.write("a.ptx", header.to_owned() + &plane(|_, _| "0.5".into()));
+    program.write(
+        "a.obj",
+        plane(|_, _| "1 0.5 0".into()).lines().map(|row| format!("v {row}\n")).collect::<String>(),
+    );
+    program.write("a.gltf", square());
+    let row =
+        |y: i16| (-10..=10i16).flat_map(move |x| gaussian(f32::from(x) / 10.0, f32::from(y) / 10.0, 255));
+    program.write("a.splat", (-10..=10).flat_map(row).chain(gaussian(9.0, 0.0, 10)).collect::<Vec<u8>>());
+    let render = |name: &str| {
+        let run = program.run(&format!("render {name} -o out.png {ABOVE}"));
+        run.text();
+        assert!(program.png("out.png").get_pixel(15, 20).0[3] > 0, "{name}");
+        run.err
+    };
+    // The scanner's own position is no point.
+    let text = render("a.ptx");
+    assert!(text.contains("1 of 441 points have no finite position") && text.contains("z is up"), "{text}");
+    let text = render("a.splat");
+    assert!(
+        text.contains("1 of 442 points are less than a tenth opaque") && text.contains("-y is up"),
+        "{text}"
+    );
+    assert!(render("a.obj").contains("z is up"), "wide and flat");
+    assert!(!render("a.gltf").contains("is up"), "the format tells");
+    let info = program.run("info a.gltf");
+    assert!(
+        info.text().starts_with("a.gltf: glTF, ") && info.text().contains("faces: 2 understood"),
+        "{}",
+        info.text()
+    );
+    program.run("convert a.splat -o b.ply").text();
+    assert!(program.run("info b.ply").text().contains("surfels: 441\n"));
 }
 
 #[test]
