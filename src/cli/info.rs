@@ -1,5 +1,6 @@
 //! `surfel info`.
 
+mod counts;
 mod value;
 
 use super::args::Info;
@@ -31,12 +32,13 @@ pub fn run(args: &Info) -> Result<()> {
         columns: args.points.columns.clone(),
         filter: args.points.filter(),
         triangles: args.points.polygons,
+        attributes: counts::wanted(),
         ..Default::default()
     };
     let Inspected { format, encoding, elements, loaded } = formats::inspect(path, &options, &*bars)?;
     print(&header(path, &format!("{format}, {encoding}"), &elements))?;
-    let Loaded { cloud, report } = loaded?;
-    print(&(properties(&report) + &connectivity(&report, &cloud)))?;
+    let Loaded { cloud, report, attributes } = loaded?;
+    print(&(properties(&report) + &counts::text(&attributes) + &connectivity(&report, &cloud)))?;
     let model = cloud.into_model(args.points.polygons, &args.points.estimate(), &*bars);
     let (model, estimated) = model.map_err(|error| error.in_input(path.display().to_string()))?;
     drop(bars);

@@ -11,6 +11,7 @@
 //!    files by extension.
 
 pub mod atomic;
+mod attributes;
 #[cfg(feature = "serde")]
 pub mod camera;
 pub mod colour_bar;
@@ -41,6 +42,7 @@ mod table;
 mod text;
 mod up;
 
+pub use attributes::{Attribute, Values, WantedAttributes};
 pub use filter::{Filter, Returns};
 pub use reader::{Inspected, Loaded, ReadOptions, extensions, inspect, read, read_bytes};
 pub use report::{Dropped, Faces, Lines, Report};

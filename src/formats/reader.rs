@@ -1,5 +1,6 @@
 //! Point cloud readers: one per file format, selected by content, otherwise by extension.
 
+use super::attributes::{Attribute, WantedAttributes};
 use super::declared::{Element, Encoding};
 use super::filter::Filter;
 use super::report::Report;
@@ -68,6 +69,8 @@ pub struct Loaded {
     pub cloud: Cloud,
     /// What was read, skipped and dropped.
     pub report: Report,
+    /// The requested properties of the points.
+    pub attributes: Vec<Attribute>,
 }
 
 /// Requested contents of a file.
@@ -75,6 +78,8 @@ pub struct Loaded {
 pub struct ReadOptions {
     /// Name of the point property that becomes [`Cloud::scalar`]. A file without such a property is an error.
     pub scalar: Option<String>,
+    /// Which properties of the points are read as [`Attribute`]s.
+    pub attributes: WantedAttributes,
     /// Whether the intensity becomes [`Cloud::scalar`] if no other property does and the file has one.
     pub intensity: bool,
     /// Which points are read.

@@ -247,10 +247,11 @@ impl Load<'_> {
             columns: self.options.columns.clone(),
             triangles: self.draws_faces(),
             texture: self.options.texture.clone(),
+            ..Default::default()
         };
         let loaded = formats::read(Path::new(input), &options, self.listener)?;
         let up = loaded.up();
-        let Loaded { cloud, report } = loaded;
+        let Loaded { cloud, report, .. } = loaded;
         let scalar = report.scalar.clone();
         let name = Path::new(input).display().to_string();
         warn(&name, &report);

@@ -183,3 +183,22 @@ fn classes_and_returns_can_be_selected() {
     let info = program.run(&format!("info {} --returns last", sample("format7.laz")));
     assert!(info.text().contains("outliers, 48 by the filter\n"), "{}", info.text());
 }
+
+#[test]
+fn points_by_class_and_return_are_counted() {
+    let program = Program::new();
+    let run = program.run(&format!("info {}", sample("format7.laz")));
+    let classes = "points by class: 2 of 0 (never classified), 2 of 1 (unclassified), 2 of 2 (ground), ";
+    assert!(run.text().lines().any(|have| have.starts_with(classes)), "{}", run.text());
+    let returns = "points by return that are read: 12 of 1, 12 of 2, 12 of 3, 12 of 4, 12 of 5";
+    assert!(run.text().lines().any(|have| have == returns), "{}", run.text());
+    let json = |arguments: &str| -> serde_json::Value {
+        serde_json::from_str(program.run(arguments).text()).unwrap()
+    };
+    let info = json(&format!("info {} --json --class 2,31", sample("format7.laz")));
+    assert_eq!(info["points_by_class"], serde_json::json!({ "2": 2, "31": 1 }));
+    assert_eq!(info["points_by_return"], serde_json::json!({ "2": 1, "3": 1, "5": 1 }));
+    program.write("a.xyz", plane(|_, _| String::new()));
+    let info = json("info a.xyz --json");
+    assert!(info["points_by_class"].is_null() && info["points_by_return"].is_null());
+}

@@ -54,7 +54,7 @@ fn read(path: &Path) -> (&'static str, String) {
     let result = formats::read(path, &Default::default(), &());
     assert!(start.elapsed() < Duration::from_secs(2), "{}", path.display());
     match result {
-        Ok(Loaded { cloud, report }) => ("accept", summary(&cloud, &report)),
+        Ok(Loaded { cloud, report, .. }) => ("accept", summary(&cloud, &report)),
         Err(error) => {
             let text = error.to_string();
             assert!(text.lines().count() == 1 && text.len() < 500, "{text}");

@@ -96,7 +96,7 @@ fn check_undamaged() {
         made::all().into_iter().flat_map(|(format, files)| files.into_iter().map(move |file| (format, file)));
     for (format, bytes) in own.chain(made) {
         let bytes = if format == "spz" { made::pack(&bytes) } else { bytes };
-        let Loaded { cloud, report } =
+        let Loaded { cloud, report, .. } =
             read(format, &bytes).unwrap_or_else(|error| panic!("{format}: {error}"));
         check(&cloud, &report);
         assert_eq!(report.trailing, 0);
@@ -128,7 +128,7 @@ fn examine(format: &str, bytes: &[u8]) -> bool {
         assert!(again.elapsed() <= PATIENCE, "{time:?}, and again {:?}", again.elapsed());
     }
     match result {
-        Ok(Loaded { cloud, report }) => {
+        Ok(Loaded { cloud, report, .. }) => {
             check(&cloud, &report);
             draw(cloud);
             true

@@ -1,5 +1,6 @@
 //! `surfel info --json`.
 
+use super::counts;
 use crate::cli::args::Info;
 use crate::cli::files::print_json;
 use crate::cli::{progress, report};
@@ -40,14 +41,17 @@ fn file(all: &mut Object, args: &Info) -> Result<()> {
         columns: args.points.columns.clone(),
         filter: args.points.filter(),
         triangles: args.points.polygons,
+        attributes: counts::wanted(),
         ..Default::default()
     };
     let Inspected { encoding, elements, loaded, .. } =
         formats::inspect(path, &options, &*progress::bars(false))?;
     all.insert("format".into(), encoding.to_string().into());
     all.insert("elements".into(), elements.iter().map(element).collect());
-    let Loaded { cloud, report } = loaded?;
+    let Loaded { cloud, report, attributes } = loaded?;
     read(all, &report, &cloud);
+    all.insert("points_by_class".into(), json!(counts::of_classes(&attributes)));
+    all.insert("points_by_return".into(), json!(counts::of_returns(&attributes)));
     model(all, args, (&path.display().to_string(), report.points), cloud)
 }
 

@@ -111,14 +111,15 @@ fn load(
         },
     )?;
     meter.finish();
-    let points = Points::new(arrays, tally, None)?;
+    let mut points = Points::new(arrays, tally, None)?;
+    let attributes = points.take_attributes(element, &layout);
     let report = Report {
         details: details(file, scans),
         up: Some(DVec3::Z),
         ..Report::of_points(Encoding::Compressed, element, &layout, &points)
     };
     let view = view(scans, points.cloud.origin);
-    Ok(Loaded { cloud: Cloud { view, ..points.cloud }, report })
+    Ok(Loaded { cloud: Cloud { view, ..points.cloud }, report, attributes })
 }
 
 fn cause(error: e57::Error) -> Cause {

@@ -216,9 +216,10 @@ impl<'a> Scan<'a> {
             Coordinates::Spherical(_) => find(cloud, &RecordName::SphericalInvalidState),
             _ => find(cloud, &RecordName::CartesianInvalidState),
         };
-        let columns = layout.columns.iter().enumerate();
-        let used = columns
-            .filter_map(|(column, index)| Some((column, value(cloud, properties.get((*index)?)?))))
+        let used = layout
+            .used()
+            .into_iter()
+            .filter_map(|(column, index)| Some((column, value(cloud, properties.get(index)?))))
             .collect();
         Self { cloud, coordinates, invalid, rotation, translation, used }
     }

@@ -19,7 +19,7 @@ fn scans_of_pye57_are_in_the_coordinates_of_the_file() {
         ((i * factor % modulus) as f64 - (modulus / 2) as f64) / 1024.0
     };
     let options = ReadOptions { scalar: Some("intensity".into()), ..Default::default() };
-    let Loaded { cloud, report } = read_bytes("a.e57", &bytes(), &options).unwrap();
+    let Loaded { cloud, report, .. } = read_bytes("a.e57", &bytes(), &options).unwrap();
     // Each 20th point is invalid.
     assert_eq!((report.points, report.dropped.position, cloud.len()), (120, 6, 114));
     let valid = (0..2u64).flat_map(|scan| (0..60).filter(|i| i % 20 != 19).map(move |i| (scan, i)));
@@ -88,7 +88,7 @@ fn spherical_coordinates_deep_colours_and_flags_are_understood() {
     let transform =
         Transform { rotation: Quaternion::default(), translation: Translation { x: 1.0, y: 0.0, z: -1.0 } };
     let options = ReadOptions { scalar: Some("intensity".into()), ..Default::default() };
-    let Loaded { cloud, report } =
+    let Loaded { cloud, report, .. } =
         read_bytes("a", &written(fields, points, Some(transform)), &options).unwrap();
     assert_eq!(report.dropped.position, 1, "a direction without a range");
     let expected = [Vec3::new(3.0, 0.0, -1.0), Vec3::new(1.0, 3.0, -1.0), Vec3::new(1.0, 0.0, 3.0)];
@@ -117,12 +117,12 @@ fn positions_in_single_precision_come_back_bit_by_bit() {
     let at = [[0.1f32, -2.3, 4.5], [1e-3, 7.7, -0.3], [3.3, 1.1, 2.2]];
     let points = at.map(|at| at.map(RecordValue::Single).into()).into();
     let single = written(fields(RecordDataType::Single { min: None, max: None }), points, None);
-    let Loaded { cloud, report } = read_bytes("a", &single, &ReadOptions::default()).unwrap();
+    let Loaded { cloud, report, .. } = read_bytes("a", &single, &ReadOptions::default()).unwrap();
     assert_eq!((cloud.origin, cloud.positions), (DVec3::ZERO, at.map(Vec3::from).into()));
     assert_eq!(report.elements[0].properties[0].kind, Kind::Scalar(Scalar::F32));
     let points = at.map(|at| at.map(|axis| RecordValue::Double(axis.into())).into()).into();
     let double = written(fields(RecordDataType::Double { min: None, max: None }), points, None);
-    let Loaded { cloud, report } = read_bytes("a", &double, &ReadOptions::default()).unwrap();
+    let Loaded { cloud, report, .. } = read_bytes("a", &double, &ReadOptions::default()).unwrap();
     assert_eq!(cloud.positions, at.map(Vec3::from));
     assert_eq!(report.elements[0].properties[0].kind, Kind::Scalar(Scalar::F64));
 }

@@ -130,6 +130,7 @@ impl<'a> Model<'a> {
         let version = ("version", Some(&self.document.asset.version));
         let details = [version, ("generator", self.document.asset.generator.as_ref())];
         let detail = |(name, value): (&str, Option<&String>)| Some((name.to_owned(), on_one_line(value?)));
+        let attributes = points.take_attributes(vertices, &layout);
         let report = Report {
             details: details.into_iter().filter_map(detail).collect(),
             up: Some(DVec3::Y),
@@ -141,7 +142,7 @@ impl<'a> Model<'a> {
             }),
             ..Report::of_points(Encoding::BinaryLittleEndian, vertices, &layout, &points)
         };
-        Ok(Loaded { cloud: points.cloud, report })
+        Ok(Loaded { cloud: points.cloud, report, attributes })
     }
 
     fn read(&self, layout: &Layout, meter: &Meter) -> Parsed<Points> {

@@ -75,7 +75,7 @@ fn transformations_are_multiplied_in_float64() {
     ]);
     let primitives = json!([{"attributes": {"POSITION": 0, "NORMAL": 1}}]);
     let (document, buffer) = document(nodes, primitives, &[(&positions, three(4)), (&normals, three(4))]);
-    let Loaded { cloud, report } = loaded(&document, &buffer).unwrap();
+    let Loaded { cloud, report, .. } = loaded(&document, &buffer).unwrap();
     let at = |i: usize| cloud.origin + cloud.positions[i].as_dvec3();
     let near = |at: DVec3, x: f64, y: f64, z: f64| (at - DVec3::new(x, y, z)).abs().max_element() < 1e-6;
     assert!(near(at(0), 4_000_000.625, 500_000.25, 6.0) && near(at(1), 4_000_001.625, 500_000.25, 6.0));
@@ -113,7 +113,7 @@ fn colours_are_linear_and_normalized_and_times_the_material() {
 fn strips_and_fans_become_triangles() {
     let triangles = |mode: u32, indices: &[u8]| {
         let (document, buffer) = square(mode, indices);
-        let Loaded { cloud, report } = loaded(&document, &buffer).unwrap();
+        let Loaded { cloud, report, .. } = loaded(&document, &buffer).unwrap();
         (cloud.triangles, report.faces.skipped)
     };
     assert_eq!(triangles(4, &[0, 1, 2, 2, 1, 3, 0]), (vec![[0, 1, 2], [2, 1, 3]], 0));
@@ -134,14 +134,14 @@ fn strips_and_fans_become_triangles() {
 #[test]
 fn vertices_that_no_index_names_are_left_out() {
     let (document, buffer) = square(0, &[3, 1, 9]);
-    let Loaded { cloud, report } = loaded(&document, &buffer).unwrap();
+    let Loaded { cloud, report, .. } = loaded(&document, &buffer).unwrap();
     assert_eq!((cloud.positions, report.points), (vec![Vec3::X, Vec3::new(1.0, 1.0, 0.0)], 2));
     // Primitives with the same attributes share their vertices.
     let (mut document, buffer) = square(4, &[3, 1, 2]);
     let other = json!({"attributes": {"POSITION": 0}, "indices": 1, "mode": 6});
     let lines = json!({"attributes": {"POSITION": 0}, "mode": 1});
     document["meshes"][0]["primitives"].as_array_mut().unwrap().extend([other, lines]);
-    let Loaded { cloud, report } = loaded(&document, &buffer).unwrap();
+    let Loaded { cloud, report, .. } = loaded(&document, &buffer).unwrap();
     assert_eq!((cloud.len(), cloud.triangles), (3, vec![[2, 0, 1], [2, 0, 1]]));
     assert_eq!(report.skipped_elements, ["lines"]);
 }

@@ -85,14 +85,15 @@ fn load(table: &read::Table, encoding: Encoding, progress: &dyn Progress) -> Par
     let meter = Meter::new(progress, table.source.size());
     let (arrays, tally) = table.read(&meter)?;
     meter.finish();
-    let points = Points::new(arrays, tally, table.layout.origin)?;
+    let mut points = Points::new(arrays, tally, table.layout.origin)?;
+    let attributes = points.take_attributes(table.element, table.layout);
     let report = Report {
         details: details::of(table.header),
         up: Some(glam::DVec3::Z),
         ..Report::of_points(encoding, table.element, table.layout, &points)
     };
     let cloud = Cloud { colours: points.cloud.colours.and_then(colours), ..points.cloud };
-    Ok(Loaded { cloud, report })
+    Ok(Loaded { cloud, report, attributes })
 }
 
 /// Colours that are all 0 are none, and those of which no channel exceeds 255 are 8-bit.

@@ -84,8 +84,11 @@ impl Table<'_> {
 
     /// Each filled column with its field.
     fn used(&self) -> Vec<(usize, &Field)> {
-        let columns = self.layout.columns.iter().enumerate();
-        columns.filter_map(|(column, index)| Some((column, self.fields.get((*index)?)?))).collect()
+        self.layout
+            .used()
+            .into_iter()
+            .filter_map(|(column, index)| Some((column, self.fields.get(index)?)))
+            .collect()
     }
 }
 

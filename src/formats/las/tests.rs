@@ -92,7 +92,7 @@ fn every_field_of_every_point_format_is_read() {
 #[test]
 fn positions_colours_and_extra_bytes_are_those_of_the_writer() {
     for (number, path) in files() {
-        let Loaded { cloud, report } = read(&path, &ReadOptions::default(), &()).unwrap();
+        let Loaded { cloud, report, .. } = read(&path, &ReadOptions::default(), &()).unwrap();
         assert_eq!((report.points, report.dropped.total(), cloud.len() as u64), (COUNT, 0, COUNT));
         // Half a unit in the last place of f32 at the extent, which is far below the scale.
         let far = |(i, at): (u64, &Vec3)| (cloud.origin + at.as_dvec3() - position(i)).abs().max_element();
@@ -264,7 +264,7 @@ fn classes_and_returns_are_selected() {
     };
     // The number of each point, by its user data.
     let kept = |filter: Filter| {
-        let Loaded { cloud, report } = read(filter).unwrap();
+        let Loaded { cloud, report, .. } = read(filter).unwrap();
         assert_eq!(report.dropped.filtered, COUNT - cloud.len() as u64);
         cloud.scalar.unwrap().into_iter().map(|value| value as u64 / 3).collect::<Vec<_>>()
     };

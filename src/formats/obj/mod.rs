@@ -118,6 +118,7 @@ impl File<'_> {
         let untextured = self.survey.is_textured().then(|| {
             "texture coordinates of faces' corners are not read: bake the texture into the colours of the vertices".into()
         });
+        let attributes = points.take_attributes(vertices, &layout);
         let report = Report {
             elements: self.elements.to_vec(),
             skipped_elements: skipped.map(|element| element.name.clone()).collect(),
@@ -125,7 +126,7 @@ impl File<'_> {
             texture_missing: untextured,
             ..Report::of_points(Encoding::Ascii, vertices, &layout, &points)
         };
-        Ok(Loaded { cloud: points.cloud, report })
+        Ok(Loaded { cloud: points.cloud, report, attributes })
     }
 
     /// Gives the points their normals and triangles.

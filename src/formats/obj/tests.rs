@@ -16,7 +16,7 @@ const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 #[test]
 fn points_alone_keep_every_digit_and_their_colours() {
     let text = "# points\nv 500000.125 4000000.25 7 1 0 0.5\nv 500001.125 4000001.25 8.5 0 0.2 1 1\np 1 2\n";
-    let Loaded { cloud, report } = read(text).unwrap();
+    let Loaded { cloud, report, .. } = read(text).unwrap();
     let at: Vec<DVec3> = cloud.positions.iter().map(|at| cloud.origin + at.as_dvec3()).collect();
     assert_eq!(at, [DVec3::new(500_000.125, 4_000_000.25, 7.0), DVec3::new(500_001.125, 4_000_001.25, 8.5)]);
     assert_eq!(cloud.colours, Some(Colours::Srgb8(vec![[255, 0, 128, 0], [0, 51, 255, 0]])));
@@ -47,7 +47,7 @@ fn polygons_become_triangles_with_numbers_from_the_front_or_the_back() {
     let text = format!(
         "mtllib a.mtl\n{SQUARE}vt 0 0\nf 1/1 2/1 3/1 4/1\nv 2 2 2\nf -5 -4 -1\nf 1 2 9\nf 0 1 2\nf 1 1 2\n"
     );
-    let Loaded { cloud, report } = read(&text).unwrap();
+    let Loaded { cloud, report, .. } = read(&text).unwrap();
     assert_eq!(cloud.triangles, [[0, 1, 2], [0, 2, 3], [0, 1, 4]]);
     assert_eq!((report.faces.understood, report.faces.skipped), (2, 3));
     assert_eq!(report.skipped_elements, ["mtllib", "vt"]);
@@ -68,7 +68,7 @@ fn vertices_have_the_normal_on_which_their_corners_agree() {
 #[test]
 fn as_many_normals_as_vertices_are_theirs_without_corners_that_name_some() {
     let points = "v 0 0 0\nvn 0 0 1\nv nan 0 0\nvn 0 1 0\nv 1 0 0\nvn -4 0 0\n";
-    let Loaded { cloud, report } = read(points).unwrap();
+    let Loaded { cloud, report, .. } = read(points).unwrap();
     assert_eq!((cloud.normals, report.dropped.position), (Some(vec![Vec3::Z, -Vec3::X]), 1));
     assert_eq!(read(&points.replace("vn 0 1 0\n", "")).unwrap().cloud.normals, None);
 }

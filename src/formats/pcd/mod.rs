@@ -76,19 +76,23 @@ fn load(
         _ => read_records(source, header, layout, meter),
     }?;
     meter.finish();
-    let points = Points::new(arrays, tally, None)?;
+    let mut points = Points::new(arrays, tally, None)?;
+    let attributes = points.take_attributes(element, layout);
     let details = vec![("version".to_owned(), header.version.clone())];
     let report = Report { details, ..Report::of_points(header.encoding, element, layout, &points) };
     let origin = points.cloud.origin;
     let eye = header.view.map(|view| (view - origin).as_vec3()).filter(|eye| eye.is_finite());
     let view = eye.map_or(View::Unknown, View::From);
-    Ok(Loaded { cloud: Cloud { view, ..points.cloud }, report })
+    Ok(Loaded { cloud: Cloud { view, ..points.cloud }, report, attributes })
 }
 
 /// Each filled column with its field.
 fn used<'a>(header: &'a Header, layout: &Layout) -> Vec<(usize, &'a Field)> {
-    let columns = layout.columns.iter().enumerate();
-    columns.filter_map(|(column, index)| Some((column, header.fields.get((*index)?)?))).collect()
+    layout
+        .used()
+        .into_iter()
+        .filter_map(|(column, index)| Some((column, header.fields.get(index)?)))
+        .collect()
 }
 
 /// Returns an error unless the header's points fit into `left` bytes.
@@ -126,8 +130,11 @@ fn read_text(source: &Source, header: &Header, layout: &Layout, meter: &Meter) -
         .into());
     }
     // Values that are used by no field have no index.
+    let cell = |index: usize| Some(header.fields.get(index)?.cell);
+    let attributes = layout.attributes.iter();
     let by_cell = Layout {
-        columns: layout.columns.map(|index| Some(header.fields.get(index?)?.cell)),
+        columns: layout.columns.map(|index| cell(index?)),
+        attributes: attributes.filter_map(|(index, scalar)| Some((cell(*index)?, *scalar))).collect(),
         ..layout.clone()
     };
     let fields = used(header, layout);

@@ -33,7 +33,7 @@ fn all_encodings_of_open3d_agree() {
         ("binary.pcd", Encoding::BinaryLittleEndian, 0.0),
         ("compressed.pcd", Encoding::Compressed, 0.0),
     ] {
-        let Loaded { cloud, report } = read_bytes(name, &bytes(name), &ReadOptions::default()).unwrap();
+        let Loaded { cloud, report, .. } = read_bytes(name, &bytes(name), &ReadOptions::default()).unwrap();
         assert_eq!((report.encoding, report.points, cloud.len()), (encoding, 60, 60));
         for (i, position) in (0..).zip(&cloud.positions) {
             let exact = DVec3::new(raw(i, 0), raw(i, 1), raw(i, 2));

@@ -133,6 +133,7 @@ fn parse_records(
     let file = File { source, header: &header, vertex, layout: &layout, meter: &meter, triangles, lines };
     let mut contents = file.read()?;
     meter.finish();
+    let attributes = contents.points.take_attributes(&header.elements[vertex], &layout);
     let mut report = report(header, vertex, &layout, &contents);
     let coordinates = std::mem::take(&mut contents.points.coordinates);
     match texture {
@@ -141,7 +142,7 @@ fn parse_records(
     }
     let Points { mut cloud, materials, .. } = contents.points;
     contents.materials.give(&mut cloud, materials);
-    Ok(Loaded { cloud, report })
+    Ok(Loaded { cloud, report, attributes })
 }
 
 /// The texture, if there are vertex coordinates for it; an error tells why it cannot be used.

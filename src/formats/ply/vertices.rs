@@ -16,9 +16,10 @@ pub(super) fn read_in_order<R: Reader>(
     refuse_lie(vertex, R::least_size(vertex), reader.left())?;
     let mut arrays = Arrays::new(vertex.count, layout)?;
     let mut out = arrays.slices();
-    let (mut block, mut tally, mut rows) = (Block::new(), Tally::default(), 0);
+    let (mut block, mut tally, mut rows) = (Block::new(layout), Tally::default(), 0);
     let fields = layout.used();
-    let wanted: Vec<bool> = (0..vertex.properties.len()).map(|index| layout.uses(index)).collect();
+    let mut wanted = vec![false; vertex.properties.len()];
+    fields.iter().for_each(|(_, index)| wanted[*index] = true);
     block.set_rows(ROWS);
     walk(reader, vertex, &wanted, meter, |numbers, _| {
         for &(column, index) in &fields {

@@ -116,14 +116,15 @@ fn load(
         meter.add(bytes.len() as u64)
     })?;
     meter.finish();
-    let points = Points::new(arrays, tally, None)?;
+    let mut points = Points::new(arrays, tally, None)?;
+    let attributes = points.take_attributes(element, &layout);
     let report = Report {
         details: details(scans),
         up: Some(DVec3::Z),
         ..Report::of_points(Encoding::Ascii, element, &layout, &points)
     };
     let view = view(scans, points.cloud.origin);
-    Ok(Loaded { cloud: Cloud { view, ..points.cloud }, report })
+    Ok(Loaded { cloud: Cloud { view, ..points.cloud }, report, attributes })
 }
 
 /// All values of a point, in the coordinates of the file; those that its scan lacks are not numbers.

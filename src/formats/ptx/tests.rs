@@ -26,7 +26,7 @@ fn scans_are_in_the_coordinates_of_the_file_without_misses() {
     let second = header(1, 1, "0 0 0", "1 0 0 0\n0 1 0 0\n0 0 1 0\n500001 4000001 99 1\n") + "1 1 1 0.75\n";
     for text in [format!("{first}{second}"), format!("{first}\n\n{second}\n \n").replace('\n', "\r\n")] {
         let options = ReadOptions { intensity: true, ..Default::default() };
-        let Loaded { cloud, report } = read_bytes("a", text.as_bytes(), &options).unwrap();
+        let Loaded { cloud, report, .. } = read_bytes("a", text.as_bytes(), &options).unwrap();
         assert_eq!((report.points, report.dropped.position), (5, 1));
         let exact = [
             [499_998.25, 4_000_001.5, 103.0],
@@ -71,7 +71,7 @@ fn many_lines_are_read_in_pieces() {
     assert!(points.len() > 1 << 20);
     // The last line has no end.
     let text = identity(700, 100) + points.trim_end() + "\n" + &identity(700, 100) + points.trim_end();
-    let Loaded { cloud, report } = read(&text).unwrap();
+    let Loaded { cloud, report, .. } = read(&text).unwrap();
     assert_eq!((report.points, cloud.len()), (140_000, 140_000));
     let x = |i: usize| cloud.positions[i].x;
     assert!((0..70_000).all(|i| x(i) == i as f32 && x(70_000 + i) == i as f32));

@@ -26,7 +26,7 @@ fn a_gaussian_becomes_a_disc_across_its_smallest_axis() {
         gaussian([4.0, 5.0, 6.0], [3.0, 1.0, 0.0], [0, 0, 0, 26], [255, 128, 128, 128]),
     ]
     .concat();
-    let Loaded { cloud, report } = read(&bytes).unwrap();
+    let Loaded { cloud, report, .. } = read(&bytes).unwrap();
     assert_eq!((report.points, report.dropped.transparent, report.dropped.position), (4, 1, 1));
     assert!(report.gaussians && report.up == Some(DVec3::NEG_Y));
     assert_eq!(cloud.positions, [Vec3::new(1.0, 2.0, 3.0), Vec3::new(4.0, 5.0, 6.0)]);

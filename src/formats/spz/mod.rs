@@ -116,13 +116,14 @@ fn load(
         meter.add((next - index * PIECE) as u64 * header.stride())
     })?;
     meter.finish();
-    let points = Points::new(arrays, tally, None)?;
+    let mut points = Points::new(arrays, tally, None)?;
+    let attributes = points.take_attributes(element, &layout);
     let report = Report {
         details: header.details(),
         up: Some(DVec3::Y),
         ..Report::of_points(Encoding::Compressed, element, &layout, &points)
     };
-    Ok(Loaded { cloud: points.cloud, report })
+    Ok(Loaded { cloud: points.cloud, report, attributes })
 }
 
 /// Decompresses the arrays, exactly as much as the header states, and no more than the stream has.

@@ -46,7 +46,7 @@ fn all_versions_become_discs() {
     for (version, rotations) in [(1, &TURNED_BEFORE[..]), (2, &TURNED_BEFORE), (3, &TURNED)] {
         for degree in 0..5 {
             let head = header(version, 2, degree as u8, 1);
-            let Loaded { cloud, report } =
+            let Loaded { cloud, report, .. } =
                 read(&packed(&[&head, &arrays(version, degree, rotations)])).unwrap();
             assert_eq!((report.points, report.dropped.transparent), (2, 1), "version {version}");
             assert!(report.gaussians && report.up == Some(DVec3::Y));

@@ -2,6 +2,7 @@
 
 use super::columns::{CORNERS, MATERIAL, SCALAR, TANGENT, TEXTURE, WEIGHT};
 use super::layout::{Layout, Shape};
+use crate::formats::attributes::{Values, ValuesMut};
 use crate::formats::source::Parsed;
 use crate::formats::source::room;
 use crate::geometry::memory;
@@ -14,37 +15,53 @@ macro_rules! arrays {
         #[derive(Default)]
         pub struct Arrays {
             $(#[doc = $what] pub $name: Vec<$type>,)*
+            /// The attributes of the layout.
+            pub attributes: Vec<Values>,
         }
 
         /// Consecutive entries of [`Arrays`].
         pub struct Slices<'a> {
             $(#[doc = $what] pub $name: &'a mut [$type],)*
+            /// The attributes of the layout.
+            pub attributes: Vec<ValuesMut<'a>>,
         }
 
         impl Arrays {
             /// Arrays of zeros. `count` is validated against the size of the file.
             pub fn new(count: u64, layout: &Layout) -> Parsed<Self> {
-                let each = 0 $(+ if $there(layout) { size_of::<$type>() as u64 } else { 0 })*;
+                let each = layout.attributes.iter().map(|(_, scalar)| scalar.size()).sum::<u64>()
+                    $(+ if $there(layout) { size_of::<$type>() as u64 } else { 0 })*;
                 memory::check(&format!("its {count} points"), count.saturating_mul(each))?;
-                Ok(Self { $($name: room(if $there(layout) { count } else { 0 })?,)* })
+                let attributes = layout.attributes.iter().map(|(_, scalar)| Values::new(*scalar, count));
+                Ok(Self {
+                    $($name: room(if $there(layout) { count } else { 0 })?,)*
+                    attributes: attributes.collect::<Parsed<_>>()?,
+                })
             }
 
             /// All entries.
             pub fn slices(&mut self) -> Slices<'_> {
-                Slices { $($name: &mut self.$name,)* }
+                Slices {
+                    $($name: &mut self.$name,)*
+                    attributes: self.attributes.iter_mut().map(Values::all_mut).collect(),
+                }
             }
 
             /// Removes entries whose `kept` is false.
             pub fn retain(&mut self, kept: &[bool]) {
                 $(let mut flags = kept.iter();
                 self.$name.retain(|_| flags.next().is_none_or(|kept| *kept));)*
+                self.attributes.iter_mut().for_each(|values| values.retain(kept));
             }
         }
 
         impl<'a> Slices<'a> {
             /// Splits off the first `rows` entries.
             pub fn split(&mut self, rows: usize) -> Slices<'a> {
-                Slices { $($name: split(&mut self.$name, rows),)* }
+                Slices {
+                    $($name: split(&mut self.$name, rows),)*
+                    attributes: self.attributes.iter_mut().map(|values| values.split(rows)).collect(),
+                }
             }
         }
     };

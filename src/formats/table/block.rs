@@ -1,6 +1,7 @@
 //! A block of vertex records as columns of numbers, independent of the encoding.
 
 use super::columns::COLUMNS;
+use super::layout::Layout;
 use glam::DVec3;
 
 /// Maximum number of rows: few enough for the used columns to fit the cache.
@@ -13,8 +14,9 @@ pub struct Block {
 }
 
 impl Block {
-    pub fn new() -> Self {
-        Self { values: vec![0.0; COLUMNS * ROWS], rows: 0 }
+    /// A block for the columns of a layout.
+    pub fn new(layout: &Layout) -> Self {
+        Self { values: vec![0.0; (COLUMNS + layout.attributes.len()) * ROWS], rows: 0 }
     }
 
     /// Number of used rows.

@@ -3,8 +3,8 @@
 use super::arrays::Slices;
 use super::block::Block;
 use super::columns::{
-    AXES, CLIPS, COLOUR, CONCAVE, CORNERS, FILTER, MATERIAL, NORMAL, OPACITY, POSITION, RADIUS, ROTATION,
-    SCALAR, TANGENT, TEXTURE, TWO_SIDED, WEIGHT,
+    AXES, CLIPS, COLOUR, COLUMNS, CONCAVE, CORNERS, FILTER, MATERIAL, NORMAL, OPACITY, POSITION, RADIUS,
+    ROTATION, SCALAR, TANGENT, TEXTURE, TWO_SIDED, WEIGHT,
 };
 use super::layout::{Colour, Layout, Shape};
 use super::shape::{self, Disc};
@@ -84,6 +84,9 @@ pub fn convert(block: &Block, layout: &Layout, out: &mut Slices) -> Tally {
         // Only whole numbers in range survive the conversion and back.
         let index = *number as u16;
         *to = if f64::from(index) == *number { index } else { Materials::NONE };
+    }
+    for (index, values) in out.attributes.iter_mut().enumerate() {
+        values.store(block.column(COLUMNS + index));
     }
     out.scalar.iter_mut().zip(block.column(SCALAR)).for_each(|(to, value)| *to = *value);
     // Here, while the entries are in the cache.

@@ -49,7 +49,7 @@ pub fn fill<S>(
     let mut out = arrays.slices();
     let pieces: Vec<(usize, usize, Slices)> =
         sizes.enumerate().map(|(index, rows)| (index, rows, out.split(rows))).collect();
-    let scratch = || (Block::new(), scratch());
+    let scratch = || (Block::new(layout), scratch());
     let run = |(block, scratch): &mut (Block, S), (index, left, out): (usize, usize, Slices)| {
         let mut rows = Rows { layout, block, out, left, tally: Tally::default() };
         piece(scratch, index, &mut rows)?;

@@ -2,8 +2,11 @@
 
 use super::arrays::Arrays;
 use super::convert::Tally;
+use super::layout::Layout;
 use crate::error::Cause;
 use crate::formats::Dropped;
+use crate::formats::attributes::{Attribute, Values};
+use crate::formats::declared::Element;
 use crate::formats::source::Parsed;
 use crate::geometry::{Clip, Clips, Cloud, Colours, Weights};
 use glam::{DVec3, Vec2, Vec3};
@@ -40,6 +43,8 @@ pub struct Points {
     pub coordinates: Vec<Vec2>,
     /// Material indices, if any.
     pub materials: Vec<u16>,
+    /// The attributes of the layout.
+    attributes: Vec<Values>,
 }
 
 /// Map entry of a dropped vertex.
@@ -58,9 +63,30 @@ impl Points {
         let map = (dropped.total() > 0).then(|| leave_out(&mut arrays));
         let coordinates = std::mem::take(&mut arrays.coordinates);
         let materials = std::mem::take(&mut arrays.materials);
+        let attributes = std::mem::take(&mut arrays.attributes);
         let cloud = cloud(arrays, origin);
         let Tally { lacking, clip_lines, weights, .. } = tally;
-        Ok(Self { cloud, dropped, count, map, lacking, clip_lines, weights, coordinates, materials })
+        Ok(Self {
+            cloud,
+            dropped,
+            count,
+            map,
+            lacking,
+            clip_lines,
+            weights,
+            coordinates,
+            materials,
+            attributes,
+        })
+    }
+
+    /// Takes the attributes of a layout out, with the names of their properties.
+    pub fn take_attributes(&mut self, element: &Element, layout: &Layout) -> Vec<Attribute> {
+        let name = |index: usize| element.properties.get(index).map(|property| property.name.clone());
+        let named = layout.attributes.iter().zip(std::mem::take(&mut self.attributes));
+        named
+            .map(|((index, _), values)| Attribute { name: name(*index).unwrap_or_default(), values })
+            .collect()
     }
 
     /// The point of a vertex; `None` if the vertex does not exist or was dropped.

@@ -78,13 +78,16 @@ fn load(
     meter: &Meter,
 ) -> Parsed<Loaded> {
     let layout = Layout::of(element, options, false)?;
+    let factors: Vec<(usize, f64)> =
+        layout.used().into_iter().map(|(column, index)| (column, columns[index].factor)).collect();
     let finish = |column: usize, values: &mut [f64]| {
-        let factor = layout.columns[column].map_or(1.0, |index| columns[index].factor);
+        let factor = factors.iter().find(|(own, _)| *own == column).map_or(1.0, |(_, factor)| *factor);
         values.iter_mut().for_each(|value| *value *= factor);
     };
     let (arrays, tally) = rows::read(source, pieces, Syntax::table(columns.len()), &layout, finish, meter)?;
     meter.finish();
-    let points = Points::new(arrays, tally, None)?;
+    let mut points = Points::new(arrays, tally, None)?;
+    let attributes = points.take_attributes(element, &layout);
     let report = Report::of_points(Encoding::Ascii, element, &layout, &points);
-    Ok(Loaded { cloud: points.cloud, report })
+    Ok(Loaded { cloud: points.cloud, report, attributes })
 }

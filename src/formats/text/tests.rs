@@ -19,7 +19,7 @@ fn files_of_open3d_agree() {
     for extension in ["xyz", "xyzn", "xyzrgb", "pts"] {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/formats");
         let path = PathBuf::from(folder).join(format!("open3d.{extension}"));
-        let Loaded { cloud, report } = read(&path, &ReadOptions::default(), &()).unwrap();
+        let Loaded { cloud, report, .. } = read(&path, &ReadOptions::default(), &()).unwrap();
         assert_eq!((report.points, cloud.len(), report.encoding), (60, 60, Encoding::Ascii), "{extension}");
         assert_eq!(cloud.positions[1], Vec3::new(-2.037_109_4, -0.301_757_8, -1.725_585_9));
         assert_eq!(cloud.normals.is_some(), extension == "xyzn");
@@ -91,7 +91,7 @@ fn long_files_are_read_in_pieces_with_comments_and_any_line_ends() {
             }
         }
         assert!(text.len() > 1 << 20);
-        let Loaded { cloud, report } = parsed(&text).unwrap();
+        let Loaded { cloud, report, .. } = parsed(&text).unwrap();
         assert_eq!((cloud.len(), report.points), (count, count as u64), "{end:?}");
         for (i, position) in cloud.positions.iter().enumerate() {
             let at = cloud.origin + position.as_dvec3();

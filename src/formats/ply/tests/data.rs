@@ -22,7 +22,7 @@ fn open(path: &Path) -> Loaded {
 fn classic_point_clouds_load_whole() {
     let Some(folder) = data("classic") else { return };
     for (name, count) in [("bunny16k.ply", 16130), ("chameleon4k.ply", 4594)] {
-        let Loaded { cloud, report } = open(&folder.join(name));
+        let Loaded { cloud, report, .. } = open(&folder.join(name));
         assert_eq!((cloud.len(), report.dropped.total()), (count, 0), "{name}");
         assert!(cloud.normals.unwrap().iter().all(|n| (n.length() - 1.0).abs() < 1e-6), "{name}");
         assert_eq!(
@@ -45,7 +45,7 @@ fn facing(cloud: &Cloud, direction: impl Fn(Vec3) -> Vec3) -> f64 {
 #[test]
 fn the_camera_stands_where_the_faces_look() {
     let Some(folder) = data("scans") else { return };
-    let Loaded { cloud, report } = open(&folder.join("laurana_rangemap_lato180.ply"));
+    let Loaded { cloud, report, .. } = open(&folder.join("laurana_rangemap_lato180.ply"));
     assert_eq!((cloud.len(), report.faces.understood), (44716, 84635));
     let View::From(eye) = cloud.view else { panic!("{:?}", cloud.view) };
     let facing = facing(&cloud, |corner| eye - corner);
@@ -55,7 +55,7 @@ fn the_camera_stands_where_the_faces_look() {
 #[test]
 fn range_grids_become_triangles() {
     let Some(folder) = data("stanford/bunny/range") else { return };
-    let Loaded { cloud, report } = open(&folder.join("bun000.ply"));
+    let Loaded { cloud, report, .. } = open(&folder.join("bun000.ply"));
     assert_eq!((cloud.len(), cloud.view), (40256, View::Towards(Vec3::Z)));
     // Of a dense height field, two triangles a point, less its rims and tears.
     let a_point = cloud.triangles.len() as f64 / cloud.len() as f64;
@@ -73,7 +73,7 @@ fn range_grids_become_triangles() {
 #[test]
 fn strips_become_the_triangles_of_a_closed_surface() {
     let Some(folder) = data("classic") else { return };
-    let Loaded { cloud, report } = open(&folder.join("igea.ply"));
+    let Loaded { cloud, report, .. } = open(&folder.join("igea.ply"));
     assert_eq!((cloud.len(), report.faces.skipped), (134_345, 0));
     // Each edge runs once each way where the winding is right everywhere.
     let mut edges: Vec<[u32; 2]> =
@@ -89,7 +89,7 @@ fn strips_become_the_triangles_of_a_closed_surface() {
 #[test]
 fn gaussians_become_two_sided_discs() {
     let Some(folder) = data("splats") else { return };
-    let Loaded { cloud, report } = open(&folder.join("train-1000.ply"));
+    let Loaded { cloud, report, .. } = open(&folder.join("train-1000.ply"));
     assert!(report.gaussians);
     assert_eq!(cloud.len() as u64 + report.dropped.transparent, 1000);
     assert_eq!((report.points, cloud.two_sided), (1000, Some(vec![true; cloud.positions.len()])));

@@ -16,7 +16,7 @@ fn square(more: &str, records: &str) -> Loaded {
 fn faces_become_fans_and_bad_ones_are_counted() {
     let records = "4 0 1 2 3\n2 0 1\n3 0 1 4\n3 0 1 -1\n3 1 1 2\n0\n";
     for name in ["vertex_indices", "vertex_index"] {
-        let Loaded { cloud, report } =
+        let Loaded { cloud, report, .. } =
             square(&format!("element face 6\nproperty list uchar int {name}"), records);
         assert_eq!(cloud.triangles, [[0, 1, 2], [0, 2, 3]]);
         assert_eq!(report.faces, Faces { understood: 1, skipped: 5 });
@@ -33,7 +33,7 @@ fn faces_follow_when_points_are_dropped() {
     let (faces, points) = ("3 0 2 3\n3 0 1 2\n4 3 2 1 0\n", "0 0 0\nnan 0 0\n1 1 0\n0 1 0\n");
     let after = load(&text(&format!("{vertex}\n{face}"), &format!("{points}{faces}")));
     let before = load(&text(&format!("{face}\n{vertex}"), &format!("{faces}{points}")));
-    for Loaded { cloud, report } in [after, before] {
+    for Loaded { cloud, report, .. } in [after, before] {
         assert_eq!((cloud.len(), cloud.triangles), (3, vec![[0, 1, 2]]));
         assert_eq!(report.faces, Faces { understood: 1, skipped: 2 });
     }
@@ -81,7 +81,7 @@ fn range_grids_leave_out_tears() {
         cells += &if cell == 0 { "0\n".into() } else { format!("1 {cell}\n") };
     }
     let lines = format!("{info}element vertex 12\n{XYZ}\n{grid}");
-    let Loaded { cloud, report } = load(&text(&lines, &format!("{points}{cells}")));
+    let Loaded { cloud, report, .. } = load(&text(&lines, &format!("{points}{cells}")));
     assert_eq!(cloud.view, View::Towards(Vec3::Z));
     // Two columns of two cells: one of them has a corner less.
     assert_eq!((cloud.triangles.len(), report.faces), (7, Faces { understood: 7, skipped: 0 }));
@@ -149,7 +149,7 @@ fn clip_lines_are_made_lines_of_the_plane_or_dropped() {
         "0 0 0 1  1 0 0 1  0 1 0 1  0",
     ];
     let records = records.map(|record| format!("0 0 0 {record}\n")).concat();
-    let Loaded { cloud, report } = load(&text(&lines, &records));
+    let Loaded { cloud, report, .. } = load(&text(&lines, &records));
     let line = |x: f32, y: f32, offset: f32| ClipLine { outward: Vec3::new(x, y, 0.0), offset };
     let one = |x, y, offset| Some(Clip::line(line(x, y, offset)));
     let expected = [
@@ -184,7 +184,7 @@ fn weights_that_are_none_are_left_out_and_counted() {
         "2  1 1 1 -1",
     ];
     let records = records.map(|record| format!("0 0 0 0 0 1 1  {record}\n")).concat();
-    let Loaded { cloud, report } = load(&text(&lines, &records));
+    let Loaded { cloud, report, .. } = load(&text(&lines, &records));
     let expected = [(0.5, None), (0.25, Some([0.1, 0.2, 0.3, 0.4])), (0.0, None), (0.0, None), (2.0, None)];
     assert_eq!((&cloud.weights, report.weights_dropped), (&Some(Weights::collect(expected)), 5));
     let (surfels, _) = cloud.into_surfels(&Default::default(), &()).unwrap();
@@ -199,7 +199,7 @@ fn gaussians_become_discs_and_haze_is_dropped() {
     let properties: Vec<_> = names.split(' ').map(|name| format!("property float {name}")).collect();
     let lines = format!("element vertex 3\n{XYZ}\n{}", properties.join("\n"));
     let records = "0 0 0  0 1.7724539 -9  2  0 -1 -3  1 0 0 0\n1 1 1  0 0 0  -2.3  0 0 0  1 0 0 0\n2 2 2  0 0 0  -2.1  0 0 0  0 0 0 0\n";
-    let Loaded { cloud, report } = load(&text(&lines, records));
+    let Loaded { cloud, report, .. } = load(&text(&lines, records));
     assert_eq!((report.gaussians, report.dropped), (true, Dropped { transparent: 1, ..Default::default() }));
     assert_eq!(cloud.positions, [Vec3::ZERO, Vec3::splat(2.0)]);
     assert_eq!((cloud.normals, cloud.radii), (Some(vec![Vec3::Z, Vec3::ZERO]), Some(vec![2.0, 0.0])));
@@ -212,7 +212,7 @@ fn gaussians_become_discs_and_haze_is_dropped() {
 fn a_chosen_number_comes_along() {
     let file = text(&format!("element vertex 2\n{XYZ}\nproperty uint id"), "0 0 0 7\nnan 0 0 8\n");
     let options = ReadOptions { scalar: Some("id".into()), ..Default::default() };
-    let Loaded { cloud, report } = read_bytes("test.ply", &file, &options).unwrap();
+    let Loaded { cloud, report, .. } = read_bytes("test.ply", &file, &options).unwrap();
     assert_eq!((cloud.scalar, report.skipped.len()), (Some(vec![7.0]), 0));
     let time = text(&format!("element vertex 1\n{XYZ}\nproperty double gps_time"), "0 0 0 300000010.0625\n");
     let options = ReadOptions { scalar: Some("gps_time".into()), ..Default::default() };
@@ -296,7 +296,7 @@ fn materials_are_those_of_the_table_and_colour_what_has_no_colour() {
         } else {
             text(&format!("{}{table}", vertices("")), &format!("{points}{records}"))
         };
-        let Loaded { cloud, report } = read_bytes("a", &file, &ReadOptions::default()).unwrap();
+        let Loaded { cloud, report, .. } = read_bytes("a", &file, &ReadOptions::default()).unwrap();
         assert_eq!(cloud.materials.as_ref(), Some(&expected), "{first}");
         assert_eq!(cloud.colours, Some(Colours::Linear(vec![[0.0; 3], grey, [1.0, 0.5, 0.0], grey])));
         assert_eq!((report.skipped.len(), report.skipped_elements.len()), (0, 0));
@@ -322,7 +322,7 @@ fn materials_are_those_of_the_table_and_colour_what_has_no_colour() {
     let cloud = read_bytes("a", &own, &ReadOptions::default()).unwrap().cloud;
     assert_eq!((cloud.materials, cloud.colours), (None, Some(Colours::Linear(vec![[0.5; 3]]))));
     let alone = read_bytes("a", &text(vertices("").trim_end(), points), &ReadOptions::default());
-    let Loaded { cloud, report } = alone.unwrap();
+    let Loaded { cloud, report, .. } = alone.unwrap();
     assert_eq!((cloud.materials, report.skipped), (None, vec!["material_index".to_owned()]));
 }
 
@@ -349,7 +349,7 @@ fn texture_coordinates_are_of_the_picture_that_the_file_or_the_caller_names() {
     let [named, other] = [0.25, 0.75].map(|grey| MipMap::new(&picture(grey)).unwrap());
     let whole = write("whole.ply", "comment TextureFile a wall.exr", names);
     for (given, image) in [(None, &named), (Some(&other), &other)] {
-        let Loaded { cloud, report } = read(&whole, given);
+        let Loaded { cloud, report, .. } = read(&whole, given);
         let texture = cloud.texture.unwrap();
         // What has no position is left out, what is nowhere in the texture is in its corner.
         assert_eq!(
@@ -381,7 +381,7 @@ fn a_faint_gaussian_that_the_filter_leaves_out_counts_once() {
     let records = record(9, 2) + &record(-9, 2) + &record(9, 3) + &record(-9, 3);
     let filter = crate::formats::Filter { classes: Some(vec![2]), returns: None };
     let options = ReadOptions { filter, ..Default::default() };
-    let Loaded { cloud, report } = read_bytes("a.ply", &text(&lines, &records), &options).unwrap();
+    let Loaded { cloud, report, .. } = read_bytes("a.ply", &text(&lines, &records), &options).unwrap();
     assert_eq!(report.dropped, Dropped { transparent: 1, filtered: 2, ..Default::default() });
     assert_eq!(cloud.len(), 1);
 }

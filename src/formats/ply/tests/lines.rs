@@ -15,7 +15,7 @@ fn line(more: &str, records: &str) -> Loaded {
 #[test]
 fn edges_are_tubes_and_what_is_none_is_left_out() {
     let all = "0 1\n3 2\n1 1\n2 4\n-1 0\n2147483647 0\n1 0\n";
-    let Loaded { cloud, report } = line(&format!("element edge 7\n{EDGE}"), all);
+    let Loaded { cloud, report, .. } = line(&format!("element edge 7\n{EDGE}"), all);
     assert_eq!((cloud.tubes, cloud.ribbons.len()), (vec![[0, 1], [3, 2], [1, 0]], 0));
     assert_eq!(report.lines, Lines { understood: 3, skipped: 4, sides: 0 });
     assert!(report.skipped_elements.is_empty());
@@ -29,7 +29,7 @@ fn edges_follow_when_points_are_dropped_and_those_without_length_are_none() {
     let (edges, points) = ("0 2\n0 1\n2 3\n0 3\n", "0 0 0\nnan 0 0\n1 1 0\n1 1 0\n");
     let after = load(&text(&format!("{vertex}\n{edge}"), &format!("{points}{edges}")));
     let before = load(&text(&format!("{edge}\n{vertex}"), &format!("{edges}{points}")));
-    for Loaded { cloud, report } in [after, before] {
+    for Loaded { cloud, report, .. } in [after, before] {
         assert_eq!((cloud.len(), cloud.tubes), (3, vec![[0, 1], [0, 2]]));
         assert_eq!(report.lines, Lines { understood: 2, skipped: 2, sides: 0 });
     }
@@ -53,7 +53,7 @@ fn polylines_restart() {
     for name in ["polyline", "linestrips"] {
         let lists = "5 0 1 2 -1 3\n4 3 2 9 0\n1 0\n0\n";
         let header = format!("element {name} 4\nproperty list uchar int vertex_indices");
-        let Loaded { cloud, report } = line(&header, lists);
+        let Loaded { cloud, report, .. } = line(&header, lists);
         assert_eq!(cloud.tubes, [[0, 1], [1, 2], [3, 2]]);
         assert_eq!(report.lines, Lines { understood: 3, skipped: 2, sides: 0 });
     }
@@ -99,9 +99,9 @@ fn diameters_and_tangents_are_those_of_files_with_lines() {
         let header = format!("element vertex 2\n{XYZ}\n{more}\nelement edge {edges}\n{EDGE}");
         load(&text(&header, &format!("0 0 0 3 0 0 2\n1 0 0 -1 0 0 0\n{records}")))
     };
-    let Loaded { cloud, report } = of(1, "0 1");
+    let Loaded { cloud, report, .. } = of(1, "0 1");
     assert_eq!((cloud.radii, cloud.tangents), (Some(vec![1.5, 0.0]), Some(vec![Vec3::Z, Vec3::ZERO])));
     assert!(report.skipped.is_empty());
-    let Loaded { cloud, report } = of(0, "");
+    let Loaded { cloud, report, .. } = of(0, "");
     assert_eq!((cloud.radii, cloud.tangents, report.skipped.len()), (None, None, 4));
 }

@@ -105,7 +105,7 @@ fn mixed(format: &str) -> Vec<u8> {
 #[test]
 fn every_encoding_gives_the_same_surfels() {
     for format in ["ascii", "binary_little_endian", "binary_big_endian"] {
-        let Loaded { cloud, report } = load(&mixed(format));
+        let Loaded { cloud, report, .. } = load(&mixed(format));
         assert_eq!(report.encoding.to_string(), format);
         assert_eq!(cloud.positions, [Vec3::new(10.0, -3.0, 200.0), Vec3::new(-100.5, 4.0, 3.0)], "{format}");
         assert_eq!(cloud.normals, Some(vec![-Vec3::X, Vec3::new(0.0, 0.6, 0.8)]), "{format}");
@@ -163,7 +163,7 @@ fn rows_of_another_table_differ_from_damage() {
 fn what_has_no_position_is_dropped_and_what_is_missing_is_0() {
     let records = "nan 0 0 0 0 1 1\n0 inf 0 0 0 0 0\n1e39 0 0 0 0 1 1\n0 0 0 0 0 1 0\n0 0 0 0 0 1 -1\n0 0 0 0 0 1 1e-60\n\
                    0 0 0 0 0 1 nan\n0 0 0 0 0 0 1\n0 0 0 0 nan 1 1\n0 0 0 1e-300 0 0 1\n0 0 0 0 -1e300 0 2\n";
-    let Loaded { cloud, report } = load(&ascii(11, "", records));
+    let Loaded { cloud, report, .. } = load(&ascii(11, "", records));
     assert_eq!(report.dropped, Dropped { position: 3, ..Default::default() });
     assert_eq!((report.points, report.dropped.total()), (11, 3));
     let (z, none) = (Vec3::Z, Vec3::ZERO);

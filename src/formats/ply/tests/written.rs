@@ -75,7 +75,7 @@ fn clips_read_back_exactly() {
     surfels.clips = Clips::collect(surfels.normals.iter().enumerate().map(clip));
     assert_eq!(surfels.count_invalid(), 0);
     write(&path, &surfels).unwrap();
-    let Loaded { cloud, report } = read(&path, &ReadOptions::default(), &()).unwrap();
+    let Loaded { cloud, report, .. } = read(&path, &ReadOptions::default(), &()).unwrap();
     assert_eq!((&cloud.clips, report.clip_lines_dropped, report.skipped.len()), (&surfels.clips, 0, 0));
     let (estimated, _) = cloud.into_surfels(&Estimate::default(), &()).unwrap();
     surfels.sort_morton();
@@ -93,7 +93,7 @@ fn weights_read_back_exactly() {
             |i: usize| (at_corners && i.is_multiple_of(3)).then(|| [1, 2, 3, 4].map(|k| weight(k * i)));
         surfels.weights = Some(Weights::collect((0..100).map(|i| (weight(i), corners(i)))));
         write(&path, &surfels).unwrap();
-        let Loaded { cloud, report } = read(&path, &ReadOptions::default(), &()).unwrap();
+        let Loaded { cloud, report, .. } = read(&path, &ReadOptions::default(), &()).unwrap();
         assert_eq!((&cloud.weights, report.weights_dropped, report.skipped.len()), (&surfels.weights, 0, 0));
         let (estimated, _) = cloud.clone().into_surfels(&Estimate::default(), &()).unwrap();
         let mut sorted = surfels.clone();
@@ -147,7 +147,7 @@ fn models_read_back_bit_by_bit() {
         for part in [other, Primitives::default()] {
             model.primitives = part;
             write(&path, &model).unwrap();
-            let Loaded { cloud, report } = read(&path, &ReadOptions::default(), &()).unwrap();
+            let Loaded { cloud, report, .. } = read(&path, &ReadOptions::default(), &()).unwrap();
             assert_eq!(
                 (report.skipped.len(), report.skipped_elements.len(), report.lines.skipped),
                 (0, 0, 0)
@@ -171,7 +171,7 @@ fn materials_read_back_with_their_points() {
     let materials = |count: usize| Some(Materials { table: table.clone(), of: (0..count).map(of).collect() });
     (model.surfels.materials, model.primitives.materials) = (materials(100), materials(50));
     write(&path, &model).unwrap();
-    let Loaded { cloud, report } = read(&path, &ReadOptions::default(), &()).unwrap();
+    let Loaded { cloud, report, .. } = read(&path, &ReadOptions::default(), &()).unwrap();
     assert_eq!((report.skipped.len(), report.skipped_elements.len()), (0, 0));
     let (again, _) = cloud.into_model(false, &without_outlines(), &()).unwrap();
     assert!(again == model, "{again:?}\n{model:?}");

@@ -1,0 +1,82 @@
+//! Numbers of points by class and by return.
+
+use std::collections::BTreeMap;
+use surfel::formats::{Attribute, WantedAttributes};
+
+/// Name of the class of a point.
+const CLASS: &str = "classification";
+/// Name of the number of a point's return.
+const RETURN: &str = "return_number";
+
+/// Names of the standard classes from 0 on (ASPRS LAS specification 1.4 R15, table 17).
+const CLASSES: [&str; 23] = [
+    "never classified",
+    "unclassified",
+    "ground",
+    "low vegetation",
+    "medium vegetation",
+    "high vegetation",
+    "building",
+    "low noise",
+    "reserved",
+    "water",
+    "rail",
+    "road surface",
+    "reserved",
+    "wire guard",
+    "wire conductor",
+    "transmission tower",
+    "wire connector",
+    "bridge deck",
+    "high noise",
+    "overhead structure",
+    "ignored ground",
+    "snow",
+    "temporal exclusion",
+];
+
+/// Points by number.
+pub type Counts = BTreeMap<i64, u64>;
+
+/// The attributes that are counted.
+pub fn wanted() -> WantedAttributes {
+    WantedAttributes::Named([CLASS, RETURN].map(str::to_owned).into())
+}
+
+/// Points by class; `None` if they have none.
+pub fn of_classes(attributes: &[Attribute]) -> Option<Counts> {
+    of(attributes, CLASS)
+}
+
+/// Points by the number of their return; `None` if they have none.
+pub fn of_returns(attributes: &[Attribute]) -> Option<Counts> {
+    of(attributes, RETURN)
+}
+
+fn of(attributes: &[Attribute], name: &str) -> Option<Counts> {
+    let values = &attributes.iter().find(|attribute| attribute.name == name)?.values;
+    let mut counts = Counts::new();
+    for value in (0..values.len()).filter_map(|point| values.get(point)) {
+        *counts.entry(value as i64).or_default() += 1;
+    }
+    Some(counts)
+}
+
+/// A line for each kind of counts.
+pub fn text(attributes: &[Attribute]) -> String {
+    let name = |class: i64| usize::try_from(class).ok().and_then(|class| CLASSES.get(class));
+    let class = |(class, count): (i64, u64)| match name(class) {
+        Some(name) => format!("{count} of {class} ({name})"),
+        None => format!("{count} of {class}"),
+    };
+    let line = |what: &str, counts: Option<Counts>, each: &dyn Fn((i64, u64)) -> String| {
+        let all: Vec<_> = counts?.into_iter().map(each).collect();
+        Some(format!("{what}: {}\n", all.join(", ")))
+    };
+    let number = |(number, count): (i64, u64)| format!("{count} of {number}");
+    let lines = [
+        line("points by class", of_classes(attributes), &class),
+        line("points by return that are read", of_returns(attributes), &number),
+    ];
+    lines.into_iter().flatten().collect()
+}
