@@ -33,6 +33,7 @@ impl Draft {
             colours: cloud.colours,
             texture: cloud.texture,
             materials: cloud.materials,
+            point_indices: cloud.point_indices,
         };
         surfels.check()?;
         if let Some(i) = surfels.positions.iter().position(|position| !position.is_finite()) {

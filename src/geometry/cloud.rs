@@ -33,6 +33,8 @@ pub struct Cloud {
     pub materials: Option<Materials>,
     /// A scalar per point, selected on reading; not finite for points without one.
     pub scalar: Option<Vec<f64>>,
+    /// Indices of the points in the inputs: see [`Surfels::point_indices`](super::Surfels::point_indices).
+    pub point_indices: Option<Vec<u32>>,
     /// Triangles as point indices, counter-clockwise from outside.
     pub triangles: Vec<[u32; 3]>,
     /// Segments of ribbons as point indices: see [`Primitives`](super::Primitives). Their ends differ in index and position.
@@ -165,6 +167,7 @@ impl Cloud {
             texture: self.texture.as_ref().map(|texture| texture.gather(kept)),
             materials: self.materials.as_ref().map(|materials| materials.gather(kept)),
             scalar: of(&self.scalar, kept),
+            point_indices: of(&self.point_indices, kept),
             tangents: of(&self.tangents, kept),
             view: self.view,
             ..Default::default()
@@ -206,6 +209,7 @@ impl From<Surfels> for Cloud {
             colours: surfels.colours,
             texture: surfels.texture,
             materials: surfels.materials,
+            point_indices: surfels.point_indices,
             ..Default::default()
         }
     }

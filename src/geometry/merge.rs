@@ -38,6 +38,7 @@ impl Surfels {
             colours: cloud.colours,
             texture: cloud.texture,
             materials: cloud.materials,
+            point_indices: cloud.point_indices,
         }
     }
 }
@@ -110,7 +111,7 @@ impl Primitives {
 }
 
 impl Cloud {
-    /// Concatenates all points of `parts`, as [`Surfels::merge`]. Points without normals, radii, tangents or scalars have none in the
+    /// Concatenates all points of `parts`, as [`Surfels::merge`]. Points without normals, radii, tangents, scalars or indices have none in the
     /// result; the view is unknown unless it is the same for all parts.
     ///
     /// # Errors
@@ -149,6 +150,11 @@ impl Cloud {
             weights: Weights::join(parts.iter_mut().map(|part| part.weights.take())),
             two_sided: join(parts, |part| part.two_sided.take(), |part| vec![false; part.len()]),
             scalar: join(parts, |part| part.scalar.take(), |part| vec![f64::NAN; part.len()]),
+            point_indices: join(
+                parts,
+                |part| part.point_indices.take(),
+                |part| vec![Surfels::NO_POINT; part.len()],
+            ),
             radii: join(parts, |part| part.radii.take(), |part| vec![0.0; part.len()]),
             normals: join(parts, |part| part.normals.take(), |part| vec![Vec3::ZERO; part.len()]),
             positions: parts.iter_mut().flat_map(|part| std::mem::take(&mut part.positions)).collect(),
@@ -227,6 +233,7 @@ mod tests {
         let full = Cloud {
             normals: Some(vec![Vec3::Z; 3]),
             scalar: Some(vec![7.0; 3]),
+            point_indices: Some(vec![4, 5, 6]),
             tangents: Some(vec![Vec3::X; 3]),
             ..bare(to)
         };
@@ -237,6 +244,8 @@ mod tests {
         assert_eq!(merged.tangents.unwrap()[3..], [Vec3::X; 3]);
         let normals = merged.normals.unwrap();
         assert_eq!((normals[0], normals[5]), (Vec3::ZERO, Vec3::Z));
+        let none = Surfels::NO_POINT;
+        assert_eq!(merged.point_indices, Some(vec![none, none, none, 4, 5, 6]));
         let scalar = merged.scalar.unwrap();
         assert!(scalar[0].is_nan() && scalar[5] == 7.0, "{scalar:?}");
         assert_eq!(merged.view, View::From((to - merged.origin).as_vec3()), "both were seen from there");

@@ -36,6 +36,8 @@ pub struct Surfels {
     pub texture: Option<Texture>,
     /// Materials for the lighting of pull–push; `None` if all have the frame's.
     pub materials: Option<Materials>,
+    /// Index of each surfel's point in the inputs, one after the other, or [`Surfels::NO_POINT`]; `None` if it is not known.
+    pub point_indices: Option<Vec<u32>>,
 }
 
 /// Shape of an elliptical disc whose longer semi-axis is the surfel's radius. The other axis is normal × major.
@@ -65,6 +67,9 @@ pub enum Colours {
 }
 
 impl Surfels {
+    /// Index of a surfel that is no point of the inputs.
+    pub const NO_POINT: u32 = u32::MAX;
+
     /// Number of surfels.
     pub fn len(&self) -> usize {
         self.positions.len()
@@ -95,6 +100,7 @@ impl Surfels {
             ("colours", self.colours.as_ref().map_or(count, Colours::len)),
             ("texture coordinates", self.texture.as_ref().map_or(count, |texture| texture.coordinates.len())),
             ("materials", self.materials.as_ref().map_or(count, |materials| materials.of.len())),
+            ("indices of points", self.point_indices.as_ref().map_or(count, Vec::len)),
         ];
         if let Some((what, length)) = lengths.iter().find(|(_, length)| *length != count) {
             return Err(Error::Usage(format!(
@@ -122,6 +128,7 @@ impl Surfels {
         self.weights.iter_mut().for_each(|weights| weights.permute(order));
         self.texture.iter_mut().for_each(|texture| gather(&mut texture.coordinates, order));
         self.materials.iter_mut().for_each(|materials| gather(&mut materials.of, order));
+        self.point_indices.iter_mut().for_each(|indices| gather(indices, order));
         match &mut self.colours {
             Some(Colours::Srgb8(colours)) => gather(colours, order),
             Some(Colours::Linear(colours)) => gather(colours, order),

@@ -130,6 +130,7 @@ mod tests {
             colours: Some(Colours::Linear(vec![[-1.0, 0.0, 1e14]; 2])),
             texture: Some(texture()),
             materials: None,
+            point_indices: None,
         }
     }
 

@@ -90,6 +90,7 @@ fn surfels(query: &Query, drafts: Vec<Draft>) -> Surfels {
         radii: drafts.par_iter().map(|draft| draft.radius as f32).collect(),
         texture: None,
         materials: None,
+        point_indices: None,
         curvatures: None,
         ellipses: elliptical.then(|| drafts.par_iter().map(ellipse).collect()),
         two_sided: two_sided.then(|| drafts.par_iter().map(|draft| draft.two_sided).collect()),
