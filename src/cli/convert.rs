@@ -6,14 +6,14 @@ use super::{progress, summary, vulkan};
 use std::path::Path;
 use std::sync::Arc;
 use surfel::capture::{Captured, capture};
-use surfel::formats::{atomic, ply};
+use surfel::formats::{self, Contents};
 use surfel::geometry::{Model, Surfels};
 use surfel::load::{LoadOptions, load};
 use surfel::settings::methods::object_ewa;
 use surfel::vk::Device;
 use surfel::{Error, Progress, Result};
 
-/// Writes the model of inputs to a PLY file. The output is checked before anything is read.
+/// Writes the model of inputs to a file. The output is checked before anything is read.
 pub fn run(args: &Convert) -> Result<()> {
     let out = Path::new(&args.output);
     check_output(args, out)?;
@@ -31,6 +31,7 @@ pub fn run(args: &Convert) -> Result<()> {
         colouring: args.colours.colouring()?,
         up: args.up,
         texture: args.colours.texture()?,
+        attributes: formats::keeps_attributes(out),
         ..Default::default()
     };
     let mut loaded = load(&args.inputs, &options, &*bars)?;
@@ -38,8 +39,12 @@ pub fn run(args: &Convert) -> Result<()> {
         check_weights(&loaded.model)?;
         capture_weights(&mut loaded.model.surfels, views, &Device::open(&device)?, &*bars, args.quiet)?;
     }
-    ply::write(out, &loaded.model)?;
+    let recoloured = args.colours.by().is_some();
+    let contents = Contents { parts: (&loaded.model).into(), inputs: &loaded.inputs, recoloured };
+    let written = formats::write(out, &contents, &*bars)?;
+    written.left_out.iter().for_each(|what| log::warn!("{}: left out: {what}", out.display()));
     if !args.quiet {
+        written.notes.iter().for_each(|note| progress::say(&format!("{}: {note}", out.display())));
         progress::say(&format!("{}: {}", out.display(), summary::parts(&loaded.model)));
     }
     Ok(())
@@ -73,17 +78,13 @@ fn capture_weights(
     Ok(())
 }
 
-/// Fails if the output is no PLY file, cannot be written, or is an input, which would be overwritten.
+/// Fails if the output has no format that is written, cannot be written, or is an input, which would be overwritten.
 fn check_output(args: &Convert, out: &Path) -> Result<()> {
-    let extension = out.extension().map(|extension| extension.to_ascii_lowercase());
-    if extension.is_none_or(|extension| extension != "ply") {
-        return Err(Error::Usage(format!("{}: name the file .ply", out.display())));
-    }
     if args.inputs.iter().any(|input| is_same(input, &args.output)) {
         return Err(Error::Usage(format!(
             "{}: it is an input, which the output would replace: name another file",
             out.display()
         )));
     }
-    atomic::check(out)
+    formats::check_writable(out)
 }

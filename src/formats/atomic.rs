@@ -1,6 +1,6 @@
 //! Atomic file writes.
 
-use crate::error::{Error, Result};
+use crate::error::{Cause, Error, Result};
 use std::fs::{self, File, Metadata};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use tempfile::NamedTempFile;
 /// Anything but a regular file (a device, a pipe) is written directly.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be written, or `fill` fails.
+/// [`Error::Io`] if the file cannot be written, or `fill` fails; [`Error::Cancelled`] if the operation was cancelled.
 pub fn write(path: &Path, fill: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> Result<()> {
     let (target, existing) = resolve(path);
     let done = match &existing {
@@ -19,7 +19,10 @@ pub fn write(path: &Path, fill: impl FnOnce(&mut BufWriter<&File>) -> io::Result
         }
         _ => replace(&target, existing.as_ref(), fill),
     };
-    done.map_err(Error::io(path, "cannot write"))
+    done.map_err(|error| match error.get_ref().and_then(|inner| inner.downcast_ref::<Cause>()) {
+        Some(Cause::Cancelled) => Error::Cancelled,
+        _ => Error::io(path, "cannot write")(error),
+    })
 }
 
 /// Checks whether [`write()`] can succeed, before there is anything to write. Leaves nothing behind.

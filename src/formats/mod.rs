@@ -9,6 +9,8 @@
 //!    requested property (`ReadOptions::scalar`).
 //! 2. `formats/reader.rs`: its entry in `READERS`; here `mod NAME;`. [`read`] selects by content, then by extension; the window lists
 //!    files by extension.
+//! 3. To be written, it implements `Writer` (`formats/writer.rs`) and has an entry in `WRITERS`. A writer replaces the file completely or not
+//!    at all ([`atomic`]), reports progress, and names what the format does not hold in [`Written`].
 
 pub mod atomic;
 mod attributes;
@@ -16,6 +18,7 @@ mod attributes;
 pub mod camera;
 pub mod colour_bar;
 pub mod declared;
+mod disc;
 #[cfg(feature = "e57")]
 mod e57;
 mod filter;
@@ -38,14 +41,20 @@ mod sniff;
 mod source;
 mod splat;
 mod spz;
+mod survey;
 mod table;
 mod text;
 mod up;
+mod writer;
 
 pub use attributes::{Attribute, Values, WantedAttributes};
 pub use filter::{Filter, Returns};
 pub use reader::{Inspected, Loaded, ReadOptions, extensions, inspect, read, read_bytes};
 pub use report::{Dropped, Faces, Lines, Report};
+pub use survey::Survey;
+pub use writer::{
+    Contents, PointSource, Written, check_writable, keeps_attributes, writable_extensions, write,
+};
 
 use crate::error::{Error, Result};
 use std::fs::File;

@@ -1,6 +1,7 @@
 //! Report of reading a file.
 
 use super::declared::{Element, Encoding};
+use super::survey::Survey;
 use super::table::{Layout, Points, Shape};
 use glam::DVec3;
 
@@ -12,6 +13,8 @@ pub struct Report {
     pub encoding: Encoding,
     /// Facts that only this format tells, by name: its version, the coordinate system, where the points come from.
     pub details: Vec<(String, String)>,
+    /// Scale, coordinate system and scans, for files that are written from this one.
+    pub survey: Survey,
     /// The up direction of all files of this kind, a unit vector; `None` if the points tell it.
     pub up: Option<DVec3>,
     /// All declared elements, in order.
@@ -59,6 +62,7 @@ impl Report {
         Self {
             encoding,
             details: Vec::new(),
+            survey: Survey::default(),
             // That of the cameras which 3D Gaussians are trained with.
             up: gaussians.then_some(DVec3::NEG_Y),
             scalar: layout.scalar_of(element).map(str::to_owned),

@@ -51,6 +51,11 @@ pub struct Ellipse {
 }
 
 impl Ellipse {
+    /// Both semi-axes of a disc with this unit normal and radius, the longer one first.
+    pub fn semi_axes(&self, normal: Vec3, radius: f32) -> [Vec3; 2] {
+        [self.major * radius, normal.cross(self.major) * (radius * self.aspect)]
+    }
+
     /// A circle with the unit normal `normal` and an arbitrary major axis.
     pub fn circle(normal: Vec3) -> Self {
         Self { major: normal.any_orthonormal_vector(), aspect: 1.0 }

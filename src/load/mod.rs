@@ -6,12 +6,13 @@
 mod colouring;
 mod shading;
 mod suggestion;
+mod warnings;
 
 pub use colouring::{Coloured, Colouring};
 pub use suggestion::{Suggestion, Uncoloured};
 
 use crate::estimate::{Estimate, Estimated};
-use crate::formats::{self, Dropped, Faces, Filter, Lines, Loaded, ReadOptions, Report};
+use crate::formats::{self, Dropped, Filter, Loaded, PointSource, ReadOptions, Report, WantedAttributes};
 use crate::geometry::{Cloud, Lined, MipMap, Model, ToLines};
 use crate::settings::Settings;
 #[cfg(feature = "scenes")]
@@ -49,6 +50,8 @@ pub struct LoadOptions {
     pub up: Option<DVec3>,
     /// Texture of the files' texture coordinates, instead of the one that they name.
     pub texture: Option<Arc<MipMap>>,
+    /// Whether the points' attributes and indices are kept, for a file of points that is written from them. Thinning drops them.
+    pub attributes: bool,
 }
 
 /// Receives the progress of a load, notes on it, and a preview.
@@ -105,6 +108,8 @@ pub struct LoadedModel {
     pub skipped: Vec<String>,
     /// Number of faces of each input, rendered or not.
     pub faces: Vec<u64>,
+    /// What each input has beyond the model; the attributes with [`LoadOptions::attributes`].
+    pub inputs: Vec<PointSource>,
 }
 
 /// Options and listener of a load.
@@ -145,8 +150,11 @@ impl Load<'_> {
         self.check_points(inputs)?;
         let (mut parts, mut read, mut dropped) = (Vec::new(), 0, Dropped::default());
         let (mut skipped, mut faces): (Vec<String>, Vec<u64>) = Default::default();
+        let (mut sources, mut points): (Vec<PointSource>, usize) = Default::default();
         for input in inputs {
-            let (part, report) = self.read(input)?;
+            let (part, source, report) = self.read(input, points)?;
+            points += source.points;
+            sources.push(source);
             let triangles = part.cloud.triangles.len() as u64;
             faces.push(report.as_ref().map_or(triangles, |report| report.faces.understood));
             read += report.as_ref().map_or(part.cloud.len() as u64, |report| report.points);
@@ -180,8 +188,18 @@ impl Load<'_> {
         let (model, estimated) = self.merge(parts)?;
         skipped.sort();
         skipped.dedup();
-        let mut loaded =
-            LoadedModel { model, read, dropped, estimated, up, coloured, suggestion, skipped, faces };
+        let mut loaded = LoadedModel {
+            model,
+            read,
+            dropped,
+            estimated,
+            up,
+            coloured,
+            suggestion,
+            skipped,
+            faces,
+            inputs: sources,
+        };
         if let (Some(colouring), None) = (colouring, &loaded.coloured) {
             loaded.coloured = colouring.colour_model(&mut loaded.model, up, self.listener);
         }
@@ -230,15 +248,13 @@ impl Load<'_> {
         }
     }
 
-    /// Reads an input; the report is that of a file.
-    fn read(&self, input: &OsStr) -> Result<(Part, Option<Report>)> {
+    /// Reads an input, whose points come after `first` others; the report is that of a file.
+    fn read(&self, input: &OsStr, first: usize) -> Result<(Part, PointSource, Option<Report>)> {
         #[cfg(feature = "scenes")]
         if let Some(name) = scene(input) {
             let cloud = scene_cloud(name)?;
-            return Ok((
-                Part { name: name.into(), cloud, draws_faces: true, up: DVec3::Y, scalar: None },
-                None,
-            ));
+            let part = Part { name: name.into(), cloud, draws_faces: true, up: DVec3::Y, scalar: None };
+            return Ok((part, PointSource::default(), None));
         }
         let options = ReadOptions {
             scalar: self.property().map(str::to_owned),
@@ -247,21 +263,32 @@ impl Load<'_> {
             columns: self.options.columns.clone(),
             triangles: self.draws_faces(),
             texture: self.options.texture.clone(),
-            ..Default::default()
+            attributes: if self.keeps_attributes() { WantedAttributes::All } else { WantedAttributes::None },
         };
         let loaded = formats::read(Path::new(input), &options, self.listener)?;
         let up = loaded.up();
-        let Loaded { cloud, report, .. } = loaded;
+        let Loaded { mut cloud, mut report, attributes } = loaded;
+        let points = cloud.len();
+        if self.keeps_attributes() {
+            cloud.point_indices = Some(indices(first, points)?);
+        }
+        let (survey, skipped) = (std::mem::take(&mut report.survey), report.skipped.clone());
+        let source = PointSource { points, attributes, survey, skipped };
         let scalar = report.scalar.clone();
         let name = Path::new(input).display().to_string();
-        warn(&name, &report);
+        warnings::log(&name, &report);
         if report.dropped.filtered > 0 {
             let Report { points, dropped, .. } = &report;
             self.listener
                 .note(&format!("{name}: {} of {points} points left out by the filter", dropped.filtered));
         }
         let cloud = self.options.points.map(|points| cloud.some(points as usize)).unwrap_or(cloud);
-        Ok((Part { name, cloud, draws_faces: false, up, scalar }, Some(report)))
+        Ok((Part { name, cloud, draws_faces: false, up, scalar }, source, Some(report)))
+    }
+
+    /// Whether attributes and indices of the points are read: means of several points have none.
+    fn keeps_attributes(&self) -> bool {
+        self.options.attributes && self.options.voxel.is_none()
     }
 
     /// Merges all parts, with one point per voxel.
@@ -365,53 +392,13 @@ impl Load<'_> {
     }
 }
 
-/// Logs warnings about parts of a file that are left out or may be damaged.
-fn warn(name: &str, report: &Report) {
-    let Dropped { position, transparent, .. } = report.dropped;
-    for (count, why) in [(position, "have no finite position"), (transparent, "are less than a tenth opaque")]
-    {
-        if count > 0 {
-            log::warn!("{name}: {count} of {} points {why} and are left out", report.points);
-        }
-    }
-    if report.clip_lines_dropped > 0 {
-        log::warn!(
-            "{name}: {} clip lines are not finite or in no tangent plane and are left out",
-            report.clip_lines_dropped
-        );
-    }
-    if report.weights_dropped > 0 {
-        log::warn!(
-            "{name}: {} normalization weights are not finite or not above 0 and are left out",
-            report.weights_dropped
-        );
-    }
-    if report.materials_dropped > 0 {
-        log::warn!(
-            "{name}: {} materials are more than can be read; points of theirs have none",
-            report.materials_dropped
-        );
-    }
-    let Faces { understood, skipped } = report.faces;
-    if skipped > 0 {
-        log::warn!(
-            "{name}: {skipped} of {} faces have no three different corners that exist and are left out",
-            skipped + understood
-        );
-    }
-    let Lines { understood, skipped, .. } = report.lines;
-    if skipped > 0 {
-        log::warn!(
-            "{name}: {skipped} of {} segments of lines have no two distinct ends that exist and are left out",
-            skipped + understood
-        );
-    }
-    if let Some(cause) = &report.texture_missing {
-        log::warn!("{name}: drawn without its texture: {cause}");
-    }
-    if report.trailing > 0 {
-        log::warn!("{name}: {} bytes after the last element mean nothing and are left out", report.trailing);
-    }
+/// Indices of points that come after others.
+fn indices(first: usize, points: usize) -> Result<Vec<u32>> {
+    let range = u32::try_from(first).ok().zip(u32::try_from(first + points).ok());
+    let (start, end) = range.ok_or_else(|| {
+        Error::Usage(format!("{} points in all inputs: give at most 2³² − 1", first + points))
+    })?;
+    Ok((start..end).collect())
 }
 
 /// Replaces the attributes that would be estimated: only the values of the cloud are needed, in the order of its surfels and vertices.

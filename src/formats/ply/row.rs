@@ -3,48 +3,26 @@
 use super::lines::TUBE;
 use super::materials;
 use super::write::FileContents;
-use crate::formats::table::columns::{
-    CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, MATERIAL_NAME, TANGENT_NAMES, WEIGHT_NAME,
-};
+use crate::formats::disc;
+use crate::formats::table::columns::{MATERIAL_NAME, TANGENT_NAMES};
 use crate::geometry::srgb;
-use crate::geometry::{Clip, Colours, Ellipse, Material, Primitives};
+use crate::geometry::{Colours, Material, Primitives};
 use crate::settings::Lighting;
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use ply_rs::ply::PropertyAccess;
 
-/// Names of the semi-axes of an elliptical disc.
-pub(super) const AXES: [&str; 6] = ["ux", "uy", "uz", "vx", "vy", "vz"];
-
-/// Names of [`Row::floats`].
-const FLOATS: [&str; 16] = [
-    "nx",
-    "ny",
-    "nz",
-    "radius",
-    "red",
-    "green",
-    "blue",
-    AXES[0],
-    AXES[1],
-    AXES[2],
-    AXES[3],
-    AXES[4],
-    AXES[5],
-    TANGENT_NAMES[0],
-    TANGENT_NAMES[1],
-    TANGENT_NAMES[2],
-];
+/// Names of the colour channels.
+pub(super) const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
 /// A surfel, or a vertex of a line or triangle.
 #[derive(Default)]
 pub(super) struct Row {
     position: DVec3,
-    floats: [f32; FLOATS.len()],
+    /// The properties of [`disc::NAMES`].
+    disc: [f32; disc::NAMES.len()],
+    linear: [f32; 3],
     srgb: [u8; 3],
-    two_sided: bool,
-    clip: Clip,
-    weight: f32,
-    corners: [f32; 4],
+    tangent: [f32; 3],
     material: i32,
 }
 
@@ -52,63 +30,42 @@ impl Row {
     /// Surfel `i`.
     pub fn surfel(contents: &FileContents, i: usize) -> Self {
         let surfels = contents.parts.surfels;
-        let (n, radius) = (surfels.normals[i], surfels.radii[i]);
-        let [u, v] = surfels.ellipses.as_ref().map_or([Vec3::ZERO; 2], |ellipses| {
-            let Ellipse { major, aspect } = ellipses[i];
-            [major * radius, n.cross(major) * (radius * aspect)]
-        });
         let [own, others] = contents.colours();
-        let ([r, g, b], srgb) = colour(own, others, i);
-        let tangent = [0.0; 3];
+        let (linear, srgb) = colour(own, others, i);
         Self {
             position: surfels.origin + surfels.positions[i].as_dvec3(),
-            floats: floats([n, Vec3::new(r, g, b), u, v, tangent.into()], radius),
+            disc: disc::numbers(surfels, i),
+            linear,
             srgb,
-            two_sided: surfels.two_sided.as_ref().is_some_and(|flags| flags[i]),
-            clip: surfels.clips.as_ref().and_then(|clips| clips.get(i)).copied().unwrap_or_default(),
-            weight: surfels.weights.as_ref().map_or(0.0, |weights| weights.of[i]),
-            corners: surfels.weights.as_ref().and_then(|weights| weights.corners_of(i)).unwrap_or_default(),
+            tangent: [0.0; 3],
             material: contents.material(i),
         }
     }
 
     /// Vertex `i` of lines and triangles.
     pub fn vertex(contents: &FileContents, primitives: &Primitives, i: usize) -> Self {
-        let direction = |is: bool| if is { primitives.directions[i] } else { Vec3::ZERO };
+        let direction = |is: bool| if is { primitives.directions[i].to_array() } else { [0.0; 3] };
         let [others, own] = contents.colours();
-        let ([r, g, b], srgb) = colour(own, others, i);
-        let [n, t] = [direction(contents.normal[i]), direction(contents.tangent[i])];
+        let (linear, srgb) = colour(own, others, i);
+        let mut disc = [0.0; disc::NAMES.len()];
+        disc[..disc::RADIUS].copy_from_slice(&direction(contents.normal[i]));
+        disc[disc::RADIUS] = primitives.radii[i];
+        // Unused, but 0 would be counted as an invalid weight.
+        disc[disc::WEIGHT] = 1.0;
         Self {
             position: primitives.origin + primitives.positions[i].as_dvec3(),
-            floats: floats([n, Vec3::new(r, g, b), Vec3::ZERO, Vec3::ZERO, t], primitives.radii[i]),
+            disc,
+            linear,
             srgb,
-            // Unused, but 0 would be counted as an invalid weight.
-            weight: 1.0,
+            tangent: direction(contents.tangent[i]),
             material: contents.material(contents.parts.surfels.len() + i),
-            ..Default::default()
         }
-    }
-
-    /// A normalization weight.
-    fn weight(&self, name: &str) -> Option<f32> {
-        match CORNER_NAMES.iter().position(|corner| *corner == name) {
-            Some(corner) => Some(self.corners[corner]),
-            None => (name == WEIGHT_NAME).then_some(self.weight),
-        }
-    }
-
-    /// A number of a clip line.
-    fn clip_number(&self, name: &str) -> Option<f32> {
-        self.clip.lines.iter().zip(CLIP_LINES).find_map(|(line, names)| {
-            let numbers = [line.outward.x, line.outward.y, line.outward.z, line.offset];
-            Some(numbers[names.iter().position(|one| *one == name)?])
-        })
     }
 }
 
-/// Normal, colour, semi-axes and tangent in the order of [`FLOATS`].
-fn floats([n, c, u, v, t]: [Vec3; 5], radius: f32) -> [f32; FLOATS.len()] {
-    [n.x, n.y, n.z, radius, c.x, c.y, c.z, u.x, u.y, u.z, v.x, v.y, v.z, t.x, t.y, t.z]
+/// The number with a name.
+fn named<T: Copy>(names: &[&str], numbers: &[T], name: &str) -> Option<T> {
+    numbers.get(names.iter().position(|own| *own == name)?).copied()
 }
 
 /// A colour as linear light and as codes, of which the header declares one. It is exact in its own encoding.
@@ -138,13 +95,10 @@ impl PropertyAccess for Row {
     }
 
     fn get_float(&self, name: &String) -> Option<f32> {
-        match FLOATS.iter().position(|float| float == name) {
-            Some(index) => Some(self.floats[index]),
-            None => self
-                .clip_number(name)
-                .or_else(|| self.weight(name))
-                .or_else(|| self.get_double(name).map(|value| value as f32)),
-        }
+        named(&disc::NAMES, &self.disc, name)
+            .or_else(|| named(&CHANNELS, &self.linear, name))
+            .or_else(|| named(&TANGENT_NAMES, &self.tangent, name))
+            .or_else(|| self.get_double(name).map(|value| value as f32))
     }
 
     fn get_int(&self, name: &String) -> Option<i32> {
@@ -152,13 +106,7 @@ impl PropertyAccess for Row {
     }
 
     fn get_uchar(&self, name: &String) -> Option<u8> {
-        if name == "two_sided" {
-            return Some(self.two_sided.into());
-        }
-        if name == CLIP_CONCAVE {
-            return Some(self.clip.concave.into());
-        }
-        Some(self.srgb[["red", "green", "blue"].iter().position(|channel| channel == name)?])
+        named(&CHANNELS, &self.srgb, name).or_else(|| Some(self.get_float(name)? as u8))
     }
 }
 

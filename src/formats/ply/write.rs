@@ -2,12 +2,14 @@
 
 use super::lines::TUBE;
 use super::materials;
-use super::row::{Line, Row, Shine, Triangle};
+use super::row::{CHANNELS, Line, Row, Shine, Triangle};
+use crate::Progress;
 use crate::error::{Error, Result};
-use crate::formats::atomic;
-use crate::formats::table::columns::{
-    CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, MATERIAL_NAME, TANGENT_NAMES, WEIGHT_NAME,
-};
+use crate::formats::declared::Scalar;
+use crate::formats::reader::Reader;
+use crate::formats::table::columns::{MATERIAL_NAME, TANGENT_NAMES};
+use crate::formats::writer::{Contents, Writer as FileWriter, Written};
+use crate::formats::{atomic, disc};
 use crate::geometry::{Colours, Materials, Parts, Primitives};
 use glam::DVec3;
 use ply_rs::ply::{
@@ -43,6 +45,23 @@ pub fn write<'a>(path: &Path, parts: impl Into<Parts<'a>>) -> Result<()> {
     }
     let contents = FileContents::new(parts)?;
     atomic::write(path, |mut out| records(&mut out, &contents))
+}
+
+impl FileWriter for super::Ply {
+    fn extensions(&self) -> &'static [&'static str] {
+        Reader::extensions(self)
+    }
+
+    fn write(&self, path: &Path, contents: &Contents<'_>, progress: &dyn Progress) -> Result<Written> {
+        let count = contents.parts.surfels.len() as u64;
+        progress.at("writing", 0, count);
+        write(path, contents.parts)?;
+        progress.at("writing", count, count);
+        let mut written = Written::default();
+        let skipped = contents.inputs.iter().flat_map(|input| input.skipped.iter().cloned()).collect();
+        written.leave_out(skipped, "not written to PLY");
+        Ok(written)
+    }
 }
 
 /// The contents of a file.
@@ -169,20 +188,9 @@ fn vertex(contents: &FileContents) -> ElementDef {
     let mut add = |names: &[&str], scalar: ScalarType| add(&mut vertex, names, scalar);
     let near = contents.parts.origin() == DVec3::ZERO;
     add(&["x", "y", "z"], if near { ScalarType::Float } else { ScalarType::Double });
-    add(&["nx", "ny", "nz", "radius"], ScalarType::Float);
-    if surfels.ellipses.is_some() {
-        add(&super::row::AXES, ScalarType::Float);
-    }
-    if surfels.two_sided.is_some() {
-        add(&["two_sided"], ScalarType::UChar);
-    }
-    if surfels.clips.is_some() {
-        CLIP_LINES.iter().for_each(|names| add(names, ScalarType::Float));
-        add(&[CLIP_CONCAVE], ScalarType::UChar);
-    }
-    if let Some(weights) = &surfels.weights {
-        add(&[WEIGHT_NAME], ScalarType::Float);
-        add(if weights.corners.is_empty() { &[] } else { &CORNER_NAMES }, ScalarType::Float);
+    for property in disc::present(surfels) {
+        let is_flag = disc::scalar(property) == Scalar::U8;
+        add(&[disc::NAMES[property]], if is_flag { ScalarType::UChar } else { ScalarType::Float });
     }
     if contents.materials.is_some() {
         add(&[MATERIAL_NAME], ScalarType::Int);
@@ -193,9 +201,9 @@ fn vertex(contents: &FileContents) -> ElementDef {
     match contents.colours() {
         [None, None] => {}
         [Some(Colours::Linear(_)), _] | [_, Some(Colours::Linear(_))] => {
-            add(&["red", "green", "blue"], ScalarType::Float);
+            add(&CHANNELS, ScalarType::Float);
         }
-        _ => add(&["red", "green", "blue"], ScalarType::UChar),
+        _ => add(&CHANNELS, ScalarType::UChar),
     }
     vertex
 }

@@ -1,0 +1,15 @@
+//! What a file tells of its points as a whole, so that a file of points that is written from it keeps it.
+
+/// Scale, coordinate system and scans of a file; nothing for formats that have none.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Survey {
+    /// Coordinate system as well-known text.
+    pub(super) coordinate_system: Option<String>,
+}
+
+impl Survey {
+    /// Coordinate system as well-known text, if the file has it.
+    pub fn coordinate_system(&self) -> Option<&str> {
+        self.coordinate_system.as_deref()
+    }
+}

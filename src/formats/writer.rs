@@ -1,0 +1,130 @@
+//! Writers of models: one per file format, selected by the extension.
+
+use super::attributes::Attribute;
+use super::survey::Survey;
+use super::{atomic, ply};
+use crate::Progress;
+use crate::error::{Error, Result};
+use crate::geometry::Parts;
+use std::path::Path;
+
+/// A file format that models are written in.
+pub(super) trait Writer: Sync {
+    /// Extensions of its files, in lower case.
+    fn extensions(&self) -> &'static [&'static str];
+
+    /// Writes a file. The progress stage is `writing`, in points.
+    fn write(&self, path: &Path, contents: &Contents<'_>, progress: &dyn Progress) -> Result<Written>;
+}
+
+/// All formats that are written.
+static WRITERS: &[&dyn Writer] = &[&ply::Ply];
+
+/// What a file is written from.
+#[derive(Clone, Copy, Debug)]
+pub struct Contents<'a> {
+    /// The model.
+    pub parts: Parts<'a>,
+    /// The inputs, in the order in which [`Surfels::point_indices`](crate::geometry::Surfels::point_indices) count their points.
+    pub inputs: &'a [PointSource],
+    /// Whether the model's colours replace those of the inputs.
+    pub recoloured: bool,
+}
+
+/// What an input has beyond the model, which formats of points keep.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PointSource {
+    /// Number of points.
+    pub points: usize,
+    /// Attributes, one number per point.
+    pub attributes: Vec<Attribute>,
+    /// What the file tells of all points.
+    pub survey: Survey,
+    /// Names of the properties that the model does not hold.
+    pub skipped: Vec<String>,
+}
+
+/// What the user of a written file should know.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Written {
+    /// How exact it is.
+    pub notes: Vec<String>,
+    /// What the format does not hold, and is left out.
+    pub left_out: Vec<String>,
+}
+
+impl Written {
+    /// Adds the names of properties that are left out, if there are any.
+    pub(super) fn leave_out(&mut self, mut names: Vec<String>, remedy: &str) {
+        names.sort();
+        names.dedup();
+        if !names.is_empty() {
+            let names: String =
+                names.join(" ").chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
+            self.left_out.push(format!("{names}: {remedy}"));
+        }
+    }
+}
+
+/// Writes a model in the format of the extension: so far PLY. The file is replaced completely or, after an error, not at all. The
+/// progress stage is `writing`.
+///
+/// A PLY file has surfels, lines and triangles ([`ply::write`]). Files of points have one point per surfel, in the order of the inputs if the
+/// surfels have [indices](crate::geometry::Surfels::point_indices), with the coordinates and attributes of the inputs.
+///
+/// # Errors
+/// [`Error::Usage`] as [`check_writable`], and if the arrays differ in length or the format cannot hold the model; [`Error::Io`] if the file
+/// cannot be written; [`Error::Cancelled`].
+pub fn write(path: &Path, contents: &Contents<'_>, progress: &dyn Progress) -> Result<Written> {
+    let writer = writer_of(path)?;
+    contents.parts.check()?;
+    writer.write(path, contents, progress)
+}
+
+/// Checks whether [`write()`] supports the extension, and whether it can write the file, before there is anything to write.
+///
+/// # Errors
+/// [`Error::Usage`] for other extensions; [`Error::Io`] as [`atomic::check`].
+pub fn check_writable(path: &Path) -> Result<()> {
+    writer_of(path)?;
+    atomic::check(path)
+}
+
+/// Whether files with this extension have the attributes of the inputs.
+pub fn keeps_attributes(path: &Path) -> bool {
+    extension(path).is_some_and(|extension| extension != "ply")
+}
+
+/// Extensions of all formats that are written, in lower case.
+pub fn writable_extensions() -> impl Iterator<Item = &'static str> {
+    WRITERS.iter().flat_map(|writer| writer.extensions()).copied()
+}
+
+fn extension(path: &Path) -> Option<String> {
+    Some(path.extension()?.to_string_lossy().to_lowercase())
+}
+
+fn writer_of(path: &Path) -> Result<&'static dyn Writer> {
+    let name = path.display();
+    let own = extension(path);
+    let has = |writer: &&&dyn Writer| own.as_deref().is_some_and(|own| writer.extensions().contains(&own));
+    WRITERS.iter().find(has).copied().ok_or_else(|| {
+        let all: Vec<_> = writable_extensions().map(|extension| format!(".{extension}")).collect();
+        Error::Usage(format!("{name}: name the file {}", all.join(", ")))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_writer_is_chosen_by_extension() {
+        for name in ["a.ply", "b/a.PLY"] {
+            assert!(writer_of(Path::new(name)).is_ok(), "{name}");
+        }
+        let failure = |name: &str| check_writable(Path::new(name)).unwrap_err().to_string();
+        assert_eq!(failure("a.obj"), "a.obj: name the file .ply");
+        assert!(failure("a").contains("name the file .ply"));
+    }
+}

@@ -1,0 +1,52 @@
+//! Warnings about what was read.
+
+use crate::formats::{Dropped, Faces, Lines, Report};
+
+/// Logs warnings about parts of a file that are left out or may be damaged.
+pub fn log(name: &str, report: &Report) {
+    let Dropped { position, transparent, .. } = report.dropped;
+    for (count, why) in [(position, "have no finite position"), (transparent, "are less than a tenth opaque")]
+    {
+        if count > 0 {
+            log::warn!("{name}: {count} of {} points {why} and are left out", report.points);
+        }
+    }
+    if report.clip_lines_dropped > 0 {
+        log::warn!(
+            "{name}: {} clip lines are not finite or in no tangent plane and are left out",
+            report.clip_lines_dropped
+        );
+    }
+    if report.weights_dropped > 0 {
+        log::warn!(
+            "{name}: {} normalization weights are not finite or not above 0 and are left out",
+            report.weights_dropped
+        );
+    }
+    if report.materials_dropped > 0 {
+        log::warn!(
+            "{name}: {} materials are more than can be read; points of theirs have none",
+            report.materials_dropped
+        );
+    }
+    let Faces { understood, skipped } = report.faces;
+    if skipped > 0 {
+        log::warn!(
+            "{name}: {skipped} of {} faces have no three different corners that exist and are left out",
+            skipped + understood
+        );
+    }
+    let Lines { understood, skipped, .. } = report.lines;
+    if skipped > 0 {
+        log::warn!(
+            "{name}: {skipped} of {} segments of lines have no two distinct ends that exist and are left out",
+            skipped + understood
+        );
+    }
+    if let Some(cause) = &report.texture_missing {
+        log::warn!("{name}: drawn without its texture: {cause}");
+    }
+    if report.trailing > 0 {
+        log::warn!("{name}: {} bytes after the last element mean nothing and are left out", report.trailing);
+    }
+}
