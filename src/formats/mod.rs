@@ -33,6 +33,8 @@ mod obj;
 #[cfg(feature = "pcd")]
 mod pcd;
 pub mod ply;
+#[cfg(feature = "las")]
+mod point_table;
 mod ptx;
 mod quoted;
 mod reader;

@@ -5,9 +5,19 @@
 pub struct Survey {
     /// Coordinate system as well-known text.
     pub(super) coordinate_system: Option<String>,
+    /// Header and records of a LAS file.
+    #[cfg(feature = "las")]
+    pub(super) las: Option<super::las::Survey>,
 }
 
 impl Survey {
+    /// The header and records of a LAS file, with its coordinate system as well-known text.
+    #[cfg(feature = "las")]
+    pub(super) fn of_las(coordinate_system: Option<String>, las: super::las::Survey) -> Self {
+        let las = Some(las);
+        Self { coordinate_system, las }
+    }
+
     /// Coordinate system as well-known text, if the file has it.
     pub fn coordinate_system(&self) -> Option<&str> {
         self.coordinate_system.as_deref()

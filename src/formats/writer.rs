@@ -1,6 +1,8 @@
 //! Writers of models: one per file format, selected by the extension.
 
 use super::attributes::Attribute;
+#[cfg(feature = "las")]
+use super::point_table::PointTable;
 use super::survey::Survey;
 use super::{atomic, ply};
 use crate::Progress;
@@ -18,7 +20,14 @@ pub(super) trait Writer: Sync {
 }
 
 /// All formats that are written.
-static WRITERS: &[&dyn Writer] = &[&ply::Ply];
+static WRITERS: &[&dyn Writer] = &[
+    &ply::Ply,
+    #[cfg(feature = "las")]
+    &super::las::Las,
+];
+
+/// Extension of LAZ files in the order of an octree, which a plain LAZ file must not have.
+const COPC: &str = ".copc.laz";
 
 /// What a file is written from.
 #[derive(Clone, Copy, Debug)]
@@ -64,9 +73,33 @@ impl Written {
             self.left_out.push(format!("{names}: {remedy}"));
         }
     }
+
+    /// Adds what files of points do not hold: elements, and properties without a number for each point.
+    #[cfg(feature = "las")]
+    pub(super) fn leave_out_elements(&mut self, table: &PointTable) {
+        self.leave_out(
+            table.unknown(),
+            "properties that are lists, or that thinned points and samples of meshes do not have",
+        );
+        let parts = &table.contents.parts;
+        let primitives = parts.primitives;
+        let count = |count: Option<usize>, name| {
+            count.filter(|count| *count > 0).map(|count| format!("{count} {name}"))
+        };
+        let all = [
+            count(primitives.map(|all| all.ribbons.len()), "ribbons"),
+            count(primitives.map(|all| all.tubes.len()), "tubes"),
+            count(primitives.map(|all| all.triangles.len()), "triangles"),
+            count(parts.surfels.materials.as_ref().map(|all| all.table.len()), "materials"),
+        ];
+        let all: Vec<_> = all.into_iter().flatten().collect();
+        if !all.is_empty() {
+            self.left_out.push(format!("{}: write a .ply file to keep them", all.join(", ")));
+        }
+    }
 }
 
-/// Writes a model in the format of the extension: so far PLY. The file is replaced completely or, after an error, not at all. The
+/// Writes a model in the format of the extension: PLY, LAS or LAZ. The file is replaced completely or, after an error, not at all. The
 /// progress stage is `writing`.
 ///
 /// A PLY file has surfels, lines and triangles ([`ply::write`]). Files of points have one point per surfel, in the order of the inputs if the
@@ -106,6 +139,9 @@ fn extension(path: &Path) -> Option<String> {
 
 fn writer_of(path: &Path) -> Result<&'static dyn Writer> {
     let name = path.display();
+    if name.to_string().to_lowercase().ends_with(COPC) {
+        return Err(Error::Usage(format!("{name}: COPC is not written: name the file .laz, without .copc")));
+    }
     let own = extension(path);
     let has = |writer: &&&dyn Writer| own.as_deref().is_some_and(|own| writer.extensions().contains(&own));
     WRITERS.iter().find(has).copied().ok_or_else(|| {
@@ -114,17 +150,31 @@ fn writer_of(path: &Path) -> Result<&'static dyn Writer> {
     })
 }
 
+/// The table of a file of points; an error if the model has no points.
+#[cfg(feature = "las")]
+pub(super) fn point_table<'a>(path: &Path, contents: &Contents<'a>) -> Result<PointTable<'a>> {
+    let Contents { parts, .. } = contents;
+    if parts.surfels.is_empty() && parts.primitives.is_some_and(|primitives| !primitives.is_empty()) {
+        return Err(Error::Usage(format!(
+            "{}: the model has lines or triangles and no points, which alone the format holds: write a .ply file",
+            path.display()
+        )));
+    }
+    Ok(PointTable::new(contents))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn a_writer_is_chosen_by_extension() {
-        for name in ["a.ply", "b/a.PLY"] {
+        for name in ["a.ply", "b/a.LAZ", "a.las"] {
             assert!(writer_of(Path::new(name)).is_ok(), "{name}");
         }
         let failure = |name: &str| check_writable(Path::new(name)).unwrap_err().to_string();
-        assert_eq!(failure("a.obj"), "a.obj: name the file .ply");
+        assert_eq!(failure("a.obj"), "a.obj: name the file .ply, .las, .laz");
         assert!(failure("a").contains("name the file .ply"));
+        assert!(failure("a.copc.LAZ").contains("COPC is not written: name the file .laz"));
     }
 }

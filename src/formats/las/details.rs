@@ -38,10 +38,15 @@ fn returns(header: &Header) -> String {
     counts[..end].iter().map(u64::to_string).collect::<Vec<_>>().join(" ")
 }
 
+/// The coordinate system as well-known text, if the file has it.
+pub fn well_known_text(header: &Header) -> Option<String> {
+    header.record("LASF_Projection", 2112).map(text)
+}
+
 /// Well-known text, or the numbers and names of GeoTIFF keys.
 fn coordinate_system(header: &Header) -> Option<String> {
-    if let Some(data) = header.record("LASF_Projection", 2112) {
-        return Some(text(data));
+    if let Some(text) = well_known_text(header) {
+        return Some(text);
     }
     let keys = header.record("LASF_Projection", 34735)?;
     let short =

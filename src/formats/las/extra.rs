@@ -24,6 +24,22 @@ const TYPES: [Scalar; 10] = [
 /// Bits of the options that say whether there are factors, and summands.
 const HAS: [u8; 2] = [8, 16];
 
+/// The name of extra bytes has room for this many bytes.
+pub const LONGEST_NAME: usize = 32;
+
+/// The description of a number in the extra bytes.
+pub fn describe(name: &str, scalar: Scalar, meaning: &str) -> [u8; DESCRIPTION] {
+    let mut description = [0; DESCRIPTION];
+    let kind = TYPES.iter().position(|own| *own == scalar).map_or(0, |kind| kind as u8 + 1);
+    description[2] = kind;
+    let mut fill = |start: usize, text: &str| {
+        description[start..][..LONGEST_NAME].iter_mut().zip(text.bytes()).for_each(|(to, byte)| *to = byte);
+    };
+    fill(4, name);
+    fill(160, meaning);
+    description
+}
+
 /// The described fields from byte `offset` of the record on. Bytes beyond the record, and those of unknown types, are left out.
 pub fn of(header: &Header, mut offset: usize) -> Vec<Field> {
     let mut fields = Vec::new();

@@ -27,11 +27,13 @@ pub struct Header {
 }
 
 /// A variable length record.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Record {
     /// Who defines it.
     pub user: String,
     /// Its number there.
     pub id: u16,
+    pub description: String,
     pub data: Vec<u8>,
 }
 
@@ -71,13 +73,17 @@ impl Header {
 
     /// Scale and offset of an axis.
     pub fn scale(&self, axis: usize) -> [f64; 2] {
-        let raw = &self.raw;
-        [
-            [raw.x_scale_factor, raw.x_offset],
-            [raw.y_scale_factor, raw.y_offset],
-            [raw.z_scale_factor, raw.z_offset],
-        ][axis]
+        scale(&self.raw)[axis]
     }
+}
+
+/// Scale and offset of each axis.
+pub fn scale(raw: &raw::Header) -> [[f64; 2]; 3] {
+    [
+        [raw.x_scale_factor, raw.x_offset],
+        [raw.y_scale_factor, raw.y_offset],
+        [raw.z_scale_factor, raw.z_offset],
+    ]
 }
 
 /// The records before the points, and the extended ones after them. They describe the points; a file whose records are damaged is read
@@ -115,7 +121,12 @@ fn collect(
             break;
         }
         let data = source.part(at, length)?.into_owned();
-        all.push(Record { user: text(&head[2..18]), id: u16::from_le_bytes([head[18], head[19]]), data });
+        all.push(Record {
+            user: text(&head[2..18]),
+            id: u16::from_le_bytes([head[18], head[19]]),
+            description: text(&head[head.len() - 32..]),
+            data,
+        });
         at += length;
         room -= length;
     }

@@ -1,4 +1,4 @@
-//! LAS reader, and LAZ: versions 1.0 to 1.4, point formats 0 to 10, extra bytes.
+//! LAS and LAZ, reader and writer: versions 1.0 to 1.4, point formats 0 to 10, extra bytes.
 //!
 //! The record's fields are properties of the element `point`, named as laspy names them; `x y z` are scaled and shifted in float64,
 //! `scan_angle` is in degrees. Extra bytes are properties, too: those that are named as [PLY's properties](super::ply), `nx ny nz` and
@@ -15,13 +15,16 @@ mod fields;
 mod header;
 mod read;
 mod stored;
+mod survey;
 #[cfg(test)]
 mod tests;
+mod write;
 
 use super::declared::{Element, Encoding, Kind, Property, Scalar};
 use super::meter::Meter;
 use super::reader::{Input, Reader};
 use super::source::Parsed;
+use super::survey::Survey as WholeSurvey;
 use super::table::{Layout, Points, linear as decode};
 use super::{Inspected, Loaded, ReadOptions, Report};
 use crate::Progress;
@@ -29,6 +32,7 @@ use crate::error::Cause;
 use crate::geometry::{Cloud, Colours};
 use header::Header;
 use stored::Stored;
+pub(super) use survey::Survey;
 
 /// The LAS and LAZ formats.
 pub(super) struct Las;
@@ -89,6 +93,7 @@ fn load(table: &read::Table, encoding: Encoding, progress: &dyn Progress) -> Par
     let attributes = points.take_attributes(table.element, table.layout);
     let report = Report {
         details: details::of(table.header),
+        survey: WholeSurvey::of_las(details::well_known_text(table.header), Survey::of(table.header)),
         up: Some(glam::DVec3::Z),
         ..Report::of_points(encoding, table.element, table.layout, &points)
     };

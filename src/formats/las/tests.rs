@@ -137,7 +137,10 @@ fn well_known_text_and_geotiff_keys_are_found() {
         let file = bytes("format0.las");
         let input = Input { name: "a", source: Source::of(&file), folder: None };
         let mut header = Header::read(&input).unwrap();
-        let record = |(id, data)| header::Record { user: "LASF_Projection".into(), id, data };
+        let record = |(id, data)| {
+            let (user, description) = ("LASF_Projection".into(), String::new());
+            header::Record { user, id, description, data }
+        };
         header.records = records.into_iter().map(record).collect();
         details::of(&header).into_iter().find(|(name, _)| name == "coordinate system").map(|(_, value)| value)
     };

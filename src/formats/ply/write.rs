@@ -59,7 +59,7 @@ impl FileWriter for super::Ply {
         progress.at("writing", count, count);
         let mut written = Written::default();
         let skipped = contents.inputs.iter().flat_map(|input| input.skipped.iter().cloned()).collect();
-        written.leave_out(skipped, "not written to PLY");
+        written.leave_out(skipped, "not written to PLY; LAS and LAZ files keep them");
         Ok(written)
     }
 }
