@@ -19,7 +19,7 @@ impl<'a> Meter<'a> {
     }
 
     /// Starts the progress of writing a file of `total` points.
-    #[cfg(feature = "las")]
+    #[cfg(any(feature = "e57", feature = "las"))]
     pub fn of_writing(progress: &'a dyn Progress, total: u64) -> Self {
         Self::of_stage("writing", progress, total)
     }

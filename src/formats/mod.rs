@@ -33,7 +33,7 @@ mod obj;
 #[cfg(feature = "pcd")]
 mod pcd;
 pub mod ply;
-#[cfg(feature = "las")]
+#[cfg(any(feature = "e57", feature = "las"))]
 mod point_table;
 mod ptx;
 mod quoted;

@@ -8,6 +8,8 @@ use std::borrow::Cow;
 
 /// Names of the coordinates.
 const POSITION: [&str; 3] = ["x", "y", "z"];
+/// Names of the coordinates in the frame of a scan, before its pose is applied.
+pub const LOCAL: [&str; 3] = ["local_x", "local_y", "local_z"];
 /// Names of the colour channels.
 const COLOURS: [&str; 3] = ["red", "green", "blue"];
 
@@ -21,6 +23,8 @@ pub struct PointTable<'a> {
     /// Index of the first point of each input.
     starts: Vec<usize>,
     position: Triple,
+    #[cfg(feature = "e57")]
+    local: Triple,
     /// 16-bit codes, if all inputs have them.
     codes: Option<Triple>,
     colours: Option<Cow<'a, Colours>>,
@@ -59,6 +63,8 @@ impl<'a> PointTable<'a> {
             order: surfels.point_indices.as_deref().map(order),
             starts,
             position: triple(inputs, POSITION),
+            #[cfg(feature = "e57")]
+            local: triple(inputs, LOCAL),
             codes: codes(contents),
             colours,
         }
@@ -103,6 +109,12 @@ impl<'a> PointTable<'a> {
         })
     }
 
+    /// The position in the frame of its scan; `None` for points without one.
+    #[cfg(feature = "e57")]
+    pub fn local(&self, row: usize) -> Option<DVec3> {
+        self.triple(&self.local, row).map(DVec3::from).filter(|local| local.is_finite())
+    }
+
     /// The number of a column; `None` if the input does not have it, or it is not finite.
     pub fn number(&self, column: &Column, row: usize) -> Option<f64> {
         let (input, index) = self.point(row)?;
@@ -118,7 +130,17 @@ impl<'a> PointTable<'a> {
         self.codes.is_some() || self.colours.is_some()
     }
 
+    /// Whether 8 bits hold the colours exactly.
+    #[cfg(feature = "e57")]
+    pub fn has_byte_colours(&self) -> bool {
+        use rayon::prelude::*;
+        let is_byte = |row: usize| self.model_codes(row).iter().all(|code| code % 257 == 0);
+        matches!(self.colours.as_deref(), Some(Colours::Srgb8(_)))
+            || (0..self.len()).into_par_iter().all(is_byte)
+    }
+
     /// sRGB-encoded colour in 16 bits, as the inputs have it if they all do; 0 without colours.
+    #[cfg(feature = "las")]
     pub fn codes(&self, row: usize) -> [u16; 3] {
         let own = self.codes.as_ref().and_then(|codes| self.triple(codes, row));
         own.map_or_else(|| self.model_codes(row), |codes| codes.map(|code| code as u16))
@@ -184,7 +206,7 @@ fn codes(contents: &Contents) -> Option<Triple> {
 /// All attributes but coordinates and colours, in the order of the inputs.
 fn columns(inputs: &[PointSource]) -> Vec<Column> {
     let mut columns: Vec<Column> = Vec::new();
-    let others = |name: &str| ![POSITION, COLOURS].concat().contains(&name);
+    let others = |name: &str| ![POSITION, LOCAL, COLOURS].concat().contains(&name);
     for attribute in inputs.iter().flat_map(|input| &input.attributes).filter(|a| others(&a.name)) {
         let scalar = attribute.values.scalar();
         match columns.iter_mut().find(|column| column.name == attribute.name) {

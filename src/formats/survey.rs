@@ -8,6 +8,9 @@ pub struct Survey {
     /// Header and records of a LAS file.
     #[cfg(feature = "las")]
     pub(super) las: Option<super::las::Survey>,
+    /// Scans of an E57 file.
+    #[cfg(feature = "e57")]
+    pub(super) scans: Vec<super::e57::ScanSurvey>,
 }
 
 impl Survey {
@@ -15,7 +18,23 @@ impl Survey {
     #[cfg(feature = "las")]
     pub(super) fn of_las(coordinate_system: Option<String>, las: super::las::Survey) -> Self {
         let las = Some(las);
-        Self { coordinate_system, las }
+        Self {
+            coordinate_system,
+            las,
+            #[cfg(feature = "e57")]
+            scans: Vec::new(),
+        }
+    }
+
+    /// The scans of an E57 file, with its coordinate system.
+    #[cfg(feature = "e57")]
+    pub(super) fn of_scans(coordinate_system: Option<String>, scans: Vec<super::e57::ScanSurvey>) -> Self {
+        Self {
+            coordinate_system,
+            #[cfg(feature = "las")]
+            las: None,
+            scans,
+        }
     }
 
     /// Coordinate system as well-known text, if the file has it.

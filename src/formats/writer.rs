@@ -1,7 +1,7 @@
 //! Writers of models: one per file format, selected by the extension.
 
 use super::attributes::Attribute;
-#[cfg(feature = "las")]
+#[cfg(any(feature = "e57", feature = "las"))]
 use super::point_table::PointTable;
 use super::survey::Survey;
 use super::{atomic, ply};
@@ -24,6 +24,8 @@ static WRITERS: &[&dyn Writer] = &[
     &ply::Ply,
     #[cfg(feature = "las")]
     &super::las::Las,
+    #[cfg(feature = "e57")]
+    &super::e57::E57,
 ];
 
 /// Extension of LAZ files in the order of an octree, which a plain LAZ file must not have.
@@ -75,7 +77,7 @@ impl Written {
     }
 
     /// Adds what files of points do not hold: elements, and properties without a number for each point.
-    #[cfg(feature = "las")]
+    #[cfg(any(feature = "e57", feature = "las"))]
     pub(super) fn leave_out_elements(&mut self, table: &PointTable) {
         self.leave_out(
             table.unknown(),
@@ -99,7 +101,7 @@ impl Written {
     }
 }
 
-/// Writes a model in the format of the extension: PLY, LAS or LAZ. The file is replaced completely or, after an error, not at all. The
+/// Writes a model in the format of the extension: PLY, LAS, LAZ or E57. The file is replaced completely or, after an error, not at all. The
 /// progress stage is `writing`.
 ///
 /// A PLY file has surfels, lines and triangles ([`ply::write`]). Files of points have one point per surfel, in the order of the inputs if the
@@ -151,7 +153,7 @@ fn writer_of(path: &Path) -> Result<&'static dyn Writer> {
 }
 
 /// The table of a file of points; an error if the model has no points.
-#[cfg(feature = "las")]
+#[cfg(any(feature = "e57", feature = "las"))]
 pub(super) fn point_table<'a>(path: &Path, contents: &Contents<'a>) -> Result<PointTable<'a>> {
     let Contents { parts, .. } = contents;
     if parts.surfels.is_empty() && parts.primitives.is_some_and(|primitives| !primitives.is_empty()) {
@@ -169,11 +171,11 @@ mod tests {
 
     #[test]
     fn a_writer_is_chosen_by_extension() {
-        for name in ["a.ply", "b/a.LAZ", "a.las"] {
+        for name in ["a.ply", "b/a.LAZ", "a.las", "a.e57"] {
             assert!(writer_of(Path::new(name)).is_ok(), "{name}");
         }
         let failure = |name: &str| check_writable(Path::new(name)).unwrap_err().to_string();
-        assert_eq!(failure("a.obj"), "a.obj: name the file .ply, .las, .laz");
+        assert_eq!(failure("a.obj"), "a.obj: name the file .ply, .las, .laz, .e57");
         assert!(failure("a").contains("name the file .ply"));
         assert!(failure("a.copc.LAZ").contains("COPC is not written: name the file .laz"));
     }

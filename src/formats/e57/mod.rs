@@ -1,31 +1,35 @@
-//! E57 reader: all scans of a file, in its coordinates.
+//! E57, reader and writer: all scans of a file, in its coordinates.
 //!
 //! Spherical coordinates become Cartesian ones, and each scan's pose is applied, in float64. Points that a scan marks as invalid, or as
 //! directions without a range, are left out. The values of a point are properties of the element `point`, where a scan lacks one it is no
-//! number; colours are scaled to the limits that the file states and are sRGB-encoded. Fields of extensions have their own names; those of
-//! the surface normal extension are `nx ny nz`.
+//! number; `scan` is the number of the scan, if there are several. Colours are scaled to the limits that the file states and are
+//! sRGB-encoded. Fields of extensions have their own names; those of the surface normal extension are `nx ny nz`.
 //!
 //! The scanner of a single scan is [`View::From`].
 //!
 //! Source: ASTM E2807-11.
 
 mod scan;
+mod survey;
 #[cfg(test)]
 mod tests;
+mod write;
 
-use super::declared::{Element, Encoding};
+use super::declared::{Element, Encoding, Kind, Property, Scalar};
 use super::meter::Meter;
 use super::quoted::on_one_line;
 use super::reader::{Input, Reader};
 use super::source::{Parsed, Source, Stream};
+use super::survey::Survey;
 use super::table::{Arrays, Layout, Points, fill};
-use super::{Inspected, Loaded, ReadOptions, Report, sniff};
+use super::{Inspected, Loaded, ReadOptions, Report, WantedAttributes, point_table, sniff};
 use crate::Progress;
 use crate::error::Cause;
 use crate::geometry::{Cloud, View};
 use e57::{E57Reader, PointCloud};
 use glam::DVec3;
 use scan::Scan;
+pub(super) use survey::ScanSurvey;
 
 /// The E57 format.
 pub(super) struct E57;
@@ -94,6 +98,8 @@ fn load(
         return Err("it has no scan with points: give a file with at least one".into());
     }
     refuse_lie(scans, source.size())?;
+    let report_of = element;
+    let element = &with_local(element, scans, options);
     let layout = Layout::of(element, options, false)?;
     let mut arrays = Arrays::new(element.count, &layout)?;
     let meter = Meter::new(progress, element.count);
@@ -107,19 +113,31 @@ fn load(
             // Each thread has its own reader.
             let mut file = open(source)?;
             let points = file.pointcloud_raw(&scans[index]).map_err(cause)?;
-            Scan::of(&scans[index], &element.properties, &layout).read(points, rows, &meter)
+            Scan::of(&scans[index], index, &element.properties, &layout).read(points, rows, &meter)
         },
     )?;
     meter.finish();
     let mut points = Points::new(arrays, tally, None)?;
     let attributes = points.take_attributes(element, &layout);
+    let system = file.coordinate_metadata().filter(|text| !text.is_empty()).map(str::to_owned);
     let report = Report {
         details: details(file, scans),
+        survey: Survey::of_scans(system, scans.iter().map(ScanSurvey::of).collect()),
         up: Some(DVec3::Z),
-        ..Report::of_points(Encoding::Compressed, element, &layout, &points)
+        ..Report::of_points(Encoding::Compressed, report_of, &layout, &points)
     };
     let view = view(scans, points.cloud.origin);
     Ok(Loaded { cloud: Cloud { view, ..points.cloud }, report, attributes })
+}
+
+/// The points with their coordinates before poses are applied, if all attributes are wanted and there are poses.
+fn with_local(element: &Element, scans: &[PointCloud], options: &ReadOptions) -> Element {
+    let mut element = element.clone();
+    if options.attributes == WantedAttributes::All && scans.iter().any(|scan| scan.transform.is_some()) {
+        let local = |name: &str| Property { name: name.into(), kind: Kind::Scalar(Scalar::F64) };
+        element.properties.extend(point_table::LOCAL.map(local));
+    }
+    element
 }
 
 fn cause(error: e57::Error) -> Cause {

@@ -3,6 +3,7 @@
 use super::cause;
 use crate::formats::declared::{Kind, Property, Scalar};
 use crate::formats::meter::Meter;
+use crate::formats::point_table::LOCAL;
 use crate::formats::source::Parsed;
 use crate::formats::table::{Layout, ROWS, Rows};
 use e57::{PointCloud, RawValues, RecordDataType, RecordName, RecordValue, Transform};
@@ -23,6 +24,12 @@ enum Coordinates {
 enum Value {
     /// A coordinate.
     Axis(usize),
+    /// A coordinate before the pose is applied.
+    Local(usize),
+    /// A coordinate of the normal, which the pose rotates.
+    Normal(usize),
+    /// The number of the scan.
+    Scan,
     /// A field, times a factor after a summand.
     Field {
         index: usize,
@@ -40,7 +47,11 @@ enum Value {
 /// How the points of a scan become rows.
 pub struct Scan<'a> {
     cloud: &'a PointCloud,
+    /// Index of the scan in the file.
+    number: usize,
     coordinates: Coordinates,
+    /// The normal, by index in the prototype.
+    normal: Option<[usize; 3]>,
     /// The flag of points that are no positions.
     invalid: Option<usize>,
     rotation: DMat3,
@@ -48,6 +59,9 @@ pub struct Scan<'a> {
     /// Each filled column with its value.
     used: Vec<(usize, Value)>,
 }
+
+/// Property: the number of a point's scan, from 0.
+pub const SCAN: &str = "scan";
 
 /// Largest code of 16-bit colours.
 const WHITE: f64 = 65535.0;
@@ -81,6 +95,9 @@ pub fn properties(clouds: &[PointCloud]) -> Vec<Property> {
             };
             push(&name, scalar);
         }
+    }
+    if clouds.len() > 1 {
+        push(SCAN, Scalar::U32);
     }
     all
 }
@@ -154,11 +171,17 @@ pub fn position(cloud: &PointCloud) -> DVec3 {
 }
 
 fn pose(cloud: &PointCloud) -> (DMat3, DVec3) {
-    let Transform { rotation, translation } = cloud.transform.clone().unwrap_or_default();
+    let transform = cloud.transform.clone().unwrap_or_default();
+    let Transform { translation, .. } = &transform;
+    (rotation(&transform), DVec3::new(translation.x, translation.y, translation.z))
+}
+
+/// The rotation of a pose.
+pub fn rotation(Transform { rotation, .. }: &Transform) -> DMat3 {
     let rotation = DQuat::from_xyzw(rotation.x, rotation.y, rotation.z, rotation.w);
     // Writers that leave it all 0 mean none.
     let rotation = if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY };
-    (DMat3::from_quat(rotation), DVec3::new(translation.x, translation.y, translation.z))
+    DMat3::from_quat(rotation)
 }
 
 /// Bits of a value of this type.
@@ -209,8 +232,10 @@ fn has_bytes(cloud: &PointCloud) -> bool {
 
 impl<'a> Scan<'a> {
     /// The points of a scan as these properties.
-    pub fn of(cloud: &'a PointCloud, properties: &[Property], layout: &Layout) -> Self {
+    pub fn of(cloud: &'a PointCloud, number: usize, properties: &[Property], layout: &Layout) -> Self {
         let (rotation, translation) = pose(cloud);
+        let [x, y, z] = ["nx", "ny", "nz"].map(|axis| field(cloud, axis));
+        let normal = x.zip(y).zip(z).map(|((x, y), z)| [x, y, z]);
         let coordinates = coordinates(cloud);
         let invalid = match coordinates {
             Coordinates::Spherical(_) => find(cloud, &RecordName::SphericalInvalidState),
@@ -221,7 +246,7 @@ impl<'a> Scan<'a> {
             .into_iter()
             .filter_map(|(column, index)| Some((column, value(cloud, properties.get(index)?))))
             .collect();
-        Self { cloud, coordinates, invalid, rotation, translation, used }
+        Self { cloud, number, coordinates, normal, invalid, rotation, translation, used }
     }
 
     /// Reads all points.
@@ -257,10 +282,18 @@ impl<'a> Scan<'a> {
     fn point(&self, point: &RawValues, row: &mut [f64]) -> Parsed<()> {
         let number =
             |index: usize| point[index].to_f64(&self.cloud.prototype[index].data_type).map_err(cause);
-        let position = self.position(number)?;
+        let local = self.local(number)?;
+        let position = self.rotation * local + self.translation;
+        let normal = match self.normal {
+            Some([x, y, z]) => self.rotation * DVec3::new(number(x)?, number(y)?, number(z)?),
+            None => DVec3::NAN,
+        };
         for (to, (_, value)) in row.iter_mut().zip(&self.used) {
             *to = match *value {
                 Value::Axis(axis) => position[axis],
+                Value::Local(axis) => local[axis],
+                Value::Normal(axis) => normal[axis],
+                Value::Scan => self.number as f64,
                 Value::Field { index, summand, factor } => (number(index)? + summand) * factor,
                 Value::Valid { index, invalid } => {
                     if number(invalid)? == 0.0 {
@@ -275,8 +308,8 @@ impl<'a> Scan<'a> {
         Ok(())
     }
 
-    /// The position in the file's coordinates; not finite for a point without one.
-    fn position(&self, number: impl Fn(usize) -> Parsed<f64>) -> Parsed<DVec3> {
+    /// The position in the scan's frame; not finite for a point without one.
+    fn local(&self, number: impl Fn(usize) -> Parsed<f64>) -> Parsed<DVec3> {
         if let Some(invalid) = self.invalid
             && number(invalid)? != 0.0
         {
@@ -284,7 +317,7 @@ impl<'a> Scan<'a> {
         }
         let three =
             |[a, b, c]: [usize; 3]| Ok::<_, crate::error::Cause>([number(a)?, number(b)?, number(c)?]);
-        let own = match self.coordinates {
+        Ok(match self.coordinates {
             Coordinates::Cartesian(indices) => DVec3::from(three(indices)?),
             Coordinates::Spherical(indices) => {
                 let [range, azimuth, elevation] = three(indices)?;
@@ -296,9 +329,13 @@ impl<'a> Scan<'a> {
                     )
             }
             Coordinates::Missing => DVec3::NAN,
-        };
-        Ok(self.rotation * own + self.translation)
+        })
     }
+}
+
+/// Index in the prototype of the field that is a property.
+fn field(cloud: &PointCloud, property: &str) -> Option<usize> {
+    cloud.prototype.iter().position(|record| name(&record.name).as_deref() == Some(property))
 }
 
 /// Where the value of a property comes from.
@@ -306,10 +343,15 @@ fn value(cloud: &PointCloud, property: &Property) -> Value {
     if let Some(axis) = ["x", "y", "z"].iter().position(|axis| property.name == *axis) {
         return Value::Axis(axis);
     }
-    let index = cloud.prototype.iter().position(|record| name(&record.name).as_ref() == Some(&property.name));
-    let Some(index) = index else {
-        return Value::Missing;
+    if let Some(axis) = LOCAL.iter().position(|axis| property.name == *axis) {
+        return Value::Local(axis);
+    }
+    let Some(index) = field(cloud, &property.name) else {
+        return if property.name == SCAN { Value::Scan } else { Value::Missing };
     };
+    if let Some(axis) = ["nx", "ny", "nz"].iter().position(|axis| property.name == *axis) {
+        return Value::Normal(axis);
+    }
     if is_colour(&property.name) {
         let [min, max] = limits(cloud, &property.name, &cloud.prototype[index].data_type);
         let white = if property.kind == Kind::Scalar(Scalar::U8) { 255.0 } else { WHITE };
