@@ -202,3 +202,32 @@ fn points_by_class_and_return_are_counted() {
     let info = json("info a.xyz --json");
     assert!(info["points_by_class"].is_null() && info["points_by_return"].is_null());
 }
+
+#[test]
+fn points_are_converted_to_las_laz_and_e57() {
+    let program = Program::new();
+    let run = program.run(&format!("convert {} -o a.laz", sample("format3.las")));
+    run.text();
+    assert!(run.err.ends_with("a.laz: 60 surfels\n") && !run.err.contains("warning"), "{}", run.err);
+    let text = program.run("info a.laz").text().to_owned();
+    for line in
+        ["scale: 0.001 0.001 0.0005", "point format: 3, 68 bytes", "  double gps_time", "  float NormalZ"]
+    {
+        assert!(text.lines().any(|have| have == line), "no `{line}` in\n{text}");
+    }
+    // With its own normals and radii nothing changes any more.
+    program.run("convert a.laz -o b.laz --quiet").text();
+    let [a, b] = ["a.laz", "b.laz"].map(|name| std::fs::read(program.path(name)).unwrap());
+    assert!(a == b);
+    let run = program.run("convert a.laz -o c.e57");
+    assert!(run.err.contains("surfel: warning: c.e57: left out: big classification "), "{}", run.err);
+    assert!(program.run("info c.e57").text().contains("\nscans: 1\n"));
+    let run = program.run("convert a.laz -o d.ply");
+    assert!(run.err.contains("surfel: warning: d.ply: left out: big classification "), "{}", run.err);
+    let run = program.run("convert a.laz -o e.laz --voxel 5");
+    assert!(run.err.contains("surfel: warning: e.laz: left out: "), "{}", run.err);
+    assert!(program.run("convert a.laz -o f.copc.laz").error(2).contains("name the file .laz"));
+    let run = program.run(&format!("convert {} -o g.las --color-by user_data", sample("format3.las")));
+    run.text();
+    assert!(program.run("info g.las").text().contains("colours: linear, float"));
+}

@@ -14,11 +14,12 @@ pub struct Convert {
     /// PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, SPLAT, SPZ or text files, or built-in scenes such as scene:bumpy-sphere; several become one file
     #[arg(required = true, value_name = "INPUT")]
     pub inputs: Vec<OsString>,
-    /// The binary PLY file to write
+    /// The file to write: .ply, .las, .laz or .e57
     ///
-    /// It holds position, normal and radius; and where there are any, axes of ellipses, two-sidedness, clip lines, normalization weights,
-    /// tangents, colour, edges and faces.
-    #[arg(short, long, value_name = "OUT.ply")]
+    /// A PLY file holds position, normal and radius; and where there are any, axes of ellipses, two-sidedness, clip lines, normalization
+    /// weights, tangents, colour, edges and faces. LAS and LAZ files hold points with all properties of the inputs, and normal, radius, axes
+    /// and so on as extra bytes; E57 files hold points with normals, colours, intensities, returns and times. A warning names what is left out.
+    #[arg(short, long, value_name = "OUT")]
     pub output: OsString,
     /// Keeps one point per voxel of this side, in the positions' unit, of all inputs together
     #[arg(long, value_name = "SIZE", value_parser = positive::<f64>, allow_hyphen_values = true, conflicts_with_all = ["polygons", "lines"])]
