@@ -5,13 +5,17 @@
 //! figures kernels OUT.png                              weights of the kernels
 //! figures epsilon OUT.png                              which discs are blended
 //! figures pyramid OUT.png                              levels of a frame by pull–push
+//! figures bare IN.ply OUT.xyz                          positions and colours of points alone, as text
 //! ```
 
 use glam::{DVec2, DVec3, Vec3, dvec2, dvec3};
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 use std::collections::HashMap;
 use std::error::Error;
-use surfel::geometry::{Camera, srgb};
+use std::fmt::Write;
+use std::path::Path;
+use surfel::formats::{self, ReadOptions};
+use surfel::geometry::{Camera, Cloud, Colours, srgb};
 use surfel::settings::methods::Method;
 use surfel::verify::scenes;
 use surfel::vk::{Device, DeviceOptions};
@@ -343,6 +347,25 @@ fn pyramid() -> Result<Canvas> {
     Ok(row(&pictures))
 }
 
+/// Positions and colours of a file's points as text, without normals and radii.
+fn bare(file: &str) -> Result<String> {
+    let Cloud { origin, positions, colours, .. } =
+        formats::read(Path::new(file), &ReadOptions::default(), &())?.cloud;
+    let codes = match colours {
+        Some(Colours::Srgb8(codes)) => codes.into_iter().map(|[r, g, b, _]| [r, g, b]).collect(),
+        Some(Colours::Linear(colours)) => {
+            colours.into_iter().map(|colour| colour.map(srgb::encode8)).collect()
+        }
+        None => vec![GREY; positions.len()],
+    };
+    let mut text = String::from("x y z red green blue\n");
+    for (position, [r, g, b]) in positions.iter().zip(codes) {
+        let DVec3 { x, y, z } = origin + position.as_dvec3();
+        writeln!(text, "{x} {y} {z} {r} {g} {b}")?;
+    }
+    Ok(text)
+}
+
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
@@ -354,6 +377,7 @@ fn main() -> Result<()> {
         ["kernels", out] => kernels().write(out),
         ["epsilon", out] => epsilon().write(out),
         ["pyramid", out] => pyramid()?.write(out),
-        _ => Err("give row, kernels, epsilon or pyramid: see the beginning of tools/figures.rs".into()),
+        ["bare", file, out] => Ok(std::fs::write(out, bare(file)?)?),
+        _ => Err("give row, kernels, epsilon, pyramid or bare: see the beginning of tools/figures.rs".into()),
     }
 }
