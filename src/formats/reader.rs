@@ -9,6 +9,7 @@ use super::{obj, ply, ptx, sniff, splat, spz, text};
 use crate::Progress;
 use crate::error::{Cause, Error, Result};
 use crate::geometry::{Cloud, MipMap};
+use std::borrow::Cow;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -59,6 +60,15 @@ pub(super) struct Input<'a> {
     pub source: Source<'a>,
     /// Folder of the files that it refers to; `None` if it is not a file.
     pub folder: Option<&'a Path>,
+}
+
+impl Input<'_> {
+    /// The first bytes, at most `length`; an error that says what the file is unless they are of the reader's format.
+    pub fn beginning(&self, length: u64, is_own: impl FnOnce(&[u8]) -> bool) -> Parsed<Cow<'_, [u8]>> {
+        let size = self.source.size();
+        let beginning = self.source.part(0, size.min(length))?;
+        if is_own(&beginning) { Ok(beginning) } else { Err(sniff::name(self.name, &beginning, size).into()) }
+    }
 }
 
 /// The points of a file, with a report.

@@ -10,7 +10,7 @@ use std::path::Path;
 pub type Parsed<T> = std::result::Result<T, Cause>;
 
 /// Number of bytes for the detection of a format.
-const BEGINNING: u64 = 4096;
+pub(super) const BEGINNING: u64 = 4096;
 
 /// Contents of a file. Read, not mapped: a mapping would end the process by SIGBUS if another process truncated the file.
 pub enum Source<'a> {

@@ -19,10 +19,10 @@ use super::declared::{Element, Encoding, Kind, Property, Scalar};
 use super::meter::Meter;
 use super::quoted::on_one_line;
 use super::reader::{Input, Reader};
-use super::source::{Parsed, Source, Stream};
+use super::source::{BEGINNING, Parsed, Source, Stream};
 use super::survey::Survey;
 use super::table::{Arrays, Layout, Points, fill};
-use super::{Inspected, Loaded, ReadOptions, Report, WantedAttributes, point_table, sniff};
+use super::{Inspected, Loaded, ReadOptions, Report, WantedAttributes, point_table};
 use crate::Progress;
 use crate::error::Cause;
 use crate::geometry::{Cloud, View};
@@ -54,10 +54,7 @@ impl Reader for E57 {
         progress: &dyn Progress,
     ) -> Parsed<Inspected<Cause>> {
         let source = &input.source;
-        let beginning = source.beginning()?;
-        if !beginning.starts_with(b"ASTM-E57") {
-            return Err(sniff::name(input.name, &beginning, source.size()).into());
-        }
+        let beginning = input.beginning(BEGINNING, |beginning| beginning.starts_with(b"ASTM-E57"))?;
         refuse_description(&beginning, source.size())?;
         let file = open(source)?;
         let scans: Vec<PointCloud> = file.pointclouds().into_iter().filter(|scan| scan.records > 0).collect();

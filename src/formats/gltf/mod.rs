@@ -27,9 +27,9 @@ use super::declared::{Element, Encoding, Kind, Property, Scalar};
 use super::meter::Meter;
 use super::quoted::on_one_line;
 use super::reader::{Input, Reader};
-use super::source::Parsed;
+use super::source::{BEGINNING, Parsed};
 use super::table::{Arrays, Collector, Layout, Points, ROWS, fill};
-use super::{Faces, Inspected, Loaded, ReadOptions, Report, sniff};
+use super::{Faces, Inspected, Loaded, ReadOptions, Report};
 use crate::Progress;
 use crate::error::Cause;
 use accessor::Contents;
@@ -63,10 +63,7 @@ impl Reader for Gltf {
         progress: &dyn Progress,
     ) -> Parsed<Inspected<Cause>> {
         let source = &input.source;
-        let beginning = source.beginning()?;
-        if container::is_gltf(&beginning) == Some(false) {
-            return Err(sniff::name(input.name, &beginning, source.size()).into());
-        }
+        input.beginning(BEGINNING, |beginning| container::is_gltf(beginning) != Some(false))?;
         let document = container::document(source)?;
         scene::check_extensions(&document)?;
         let buffers = container::buffers(input, &document)?;

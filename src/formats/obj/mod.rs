@@ -25,7 +25,7 @@ use super::source::{Parsed, Source};
 use super::table::{Layout, Points};
 use super::text::lines::{self, Piece};
 use super::text::rows;
-use super::{Faces, Inspected, Loaded, ReadOptions, Report, sniff};
+use super::{Faces, Inspected, Loaded, ReadOptions, Report};
 use crate::Progress;
 use crate::error::Cause;
 use survey::Survey;
@@ -54,10 +54,7 @@ impl Reader for Obj {
     ) -> Parsed<Inspected<Cause>> {
         let source = &input.source;
         // Exporters begin with comments.
-        let beginning = source.part(0, source.size().min(lines::BEGINNING))?;
-        if !survey::is_obj(&beginning) {
-            return Err(sniff::name(input.name, &beginning, source.size()).into());
-        }
+        input.beginning(lines::BEGINNING, survey::is_obj)?;
         // The lines are counted; then the vertices are read, and then the others.
         let meter = Meter::new(progress, 3 * source.size());
         let (pieces, surveys): (Vec<Piece>, Vec<Survey>) =

@@ -18,7 +18,7 @@ use super::table::binary::gather;
 use super::table::{Arrays, Layout, Points, ROWS, Records, Tally, fill};
 use super::text::lines;
 use super::text::rows::{self, Syntax};
-use super::{Inspected, Loaded, ReadOptions, Report, sniff};
+use super::{Inspected, Loaded, ReadOptions, Report};
 use crate::Progress;
 use crate::error::Cause;
 use crate::geometry::{Cloud, View, memory};
@@ -47,10 +47,7 @@ impl Reader for Pcd {
         progress: &dyn Progress,
     ) -> Parsed<Inspected<Cause>> {
         let source = &input.source;
-        let beginning = source.part(0, source.size().min(header::LIMIT))?;
-        if !header::is_pcd(&beginning) {
-            return Err(sniff::name(input.name, &beginning, source.size()).into());
-        }
+        let beginning = input.beginning(header::LIMIT, header::is_pcd)?;
         let header = header::parse(&beginning)?;
         let property =
             |field: &Field| Property { name: field.name.clone(), kind: Kind::Scalar(field.scalar) };

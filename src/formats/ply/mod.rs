@@ -65,7 +65,7 @@ use crate::formats::meter::Meter;
 use crate::formats::reader::{Input, Reader};
 use crate::formats::source::Parsed;
 use crate::formats::table::{Layout, Points, columns};
-use crate::formats::{Inspected, Loaded, ReadOptions, Report, image, sniff};
+use crate::formats::{Inspected, Loaded, ReadOptions, Report, image};
 use crate::geometry::{MipMap, Texture};
 use elements::{Contents, File};
 use header::Header;
@@ -101,14 +101,9 @@ impl Reader for Ply {
     }
 }
 
-fn parse_header(Input { name, source, .. }: &Input<'_>) -> Parsed<Header> {
+fn parse_header(input: &Input<'_>) -> Parsed<Header> {
     // One byte more than the limit, to detect a longer header.
-    let beginning = source.part(0, source.size().min(header::LIMIT as u64 + 1))?;
-    if header::is_ply(&beginning) {
-        header::parse(&beginning)
-    } else {
-        Err(sniff::name(name, &beginning, source.size()).into())
-    }
+    header::parse(&input.beginning(header::LIMIT as u64 + 1, header::is_ply)?)
 }
 
 fn parse_records(

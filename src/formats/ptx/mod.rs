@@ -16,10 +16,10 @@ mod tests;
 use super::declared::{Element, Encoding, Kind, Property, Scalar};
 use super::meter::Meter;
 use super::reader::{Input, Reader};
-use super::source::{Parsed, Source};
+use super::source::{BEGINNING, Parsed, Source};
 use super::table::{Arrays, Layout, Points, fill};
 use super::text::rows::{self, Syntax};
-use super::{Inspected, Loaded, ReadOptions, Report, sniff};
+use super::{Inspected, Loaded, ReadOptions, Report};
 use crate::Progress;
 use crate::error::Cause;
 use crate::geometry::{Cloud, View};
@@ -61,10 +61,7 @@ impl Reader for Ptx {
         progress: &dyn Progress,
     ) -> Parsed<Inspected<Cause>> {
         let source = &input.source;
-        let beginning = source.beginning()?;
-        if !header::is_header(&beginning) {
-            return Err(sniff::name(input.name, &beginning, source.size()).into());
-        }
+        input.beginning(BEGINNING, header::is_header)?;
         // The lines are counted, and then read.
         let meter = Meter::new(progress, 2 * source.size());
         let scans = scans(source, &meter)?;

@@ -15,9 +15,9 @@ use super::gaussians::{HARMONICS, OPACITY, ROTATION, SCALES};
 use super::meter::Meter;
 use super::quoted::on_one_line;
 use super::reader::{Input, Reader};
-use super::source::{Parsed, Source, Stream};
+use super::source::{BEGINNING, Parsed, Source, Stream};
 use super::table::{Arrays, Layout, Points, ROWS, fill};
-use super::{Inspected, Loaded, ReadOptions, Report, sniff};
+use super::{Inspected, Loaded, ReadOptions, Report};
 use crate::Progress;
 use crate::error::Cause;
 use crate::geometry::memory;
@@ -56,10 +56,7 @@ impl Reader for Spz {
         progress: &dyn Progress,
     ) -> Parsed<Inspected<Cause>> {
         let source = &input.source;
-        let beginning = source.beginning()?;
-        if !header::is_spz(&beginning) {
-            return Err(sniff::name(input.name, &beginning, source.size()).into());
-        }
+        let beginning = input.beginning(BEGINNING, header::is_spz)?;
         if beginning.starts_with(header::MAGIC) {
             return Err(header::unsupported(&beginning).into());
         }

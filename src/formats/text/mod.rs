@@ -18,7 +18,7 @@ use super::meter::Meter;
 use super::reader::{Input, Reader};
 use super::source::{Parsed, Source};
 use super::table::{Layout, Points};
-use super::{Inspected, Loaded, ReadOptions, Report, sniff};
+use super::{Inspected, Loaded, ReadOptions, Report};
 use crate::Progress;
 use crate::error::Cause;
 use columns::{Column, Head};
@@ -48,10 +48,7 @@ impl Reader for Text {
         progress: &dyn Progress,
     ) -> Parsed<Inspected<Cause>> {
         let source = &input.source;
-        let beginning = source.part(0, source.size().min(lines::BEGINNING))?;
-        if !columns::is_table(&beginning) {
-            return Err(sniff::name(input.name, &beginning, source.size()).into());
-        }
+        let beginning = input.beginning(lines::BEGINNING, columns::is_table)?;
         let Head { columns, start, line } =
             Head::of(&beginning, options.columns.as_deref(), input.name.to_lowercase().ends_with(".xyzrgb"))?;
         // The lines are counted, and then read.
