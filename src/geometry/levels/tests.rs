@@ -1,3 +1,4 @@
+use super::cells::{FEW, LEAST_SHARE};
 use super::*;
 use crate::geometry::{Bounds, Camera, Weights};
 use crate::settings::Settings;
@@ -196,4 +197,29 @@ fn no_more_are_drawn_than_the_bound_says() {
         assert_eq!(bound.clone().with(&MostDrawn::all(7)).at(2.0), bound.at(2.0) + 7);
         assert_eq!(bound.least_lod(0), MostDrawn::lods().last().unwrap());
     }
+}
+
+#[test]
+fn building_reports_every_point_and_can_be_cancelled() {
+    use std::sync::atomic::{AtomicU64, Ordering};
+
+    struct Until(AtomicU64, u64);
+
+    impl crate::Progress for Until {
+        fn at(&self, stage: &'static str, done: u64, total: u64) {
+            assert_eq!((stage, total), ("building levels of detail", 30_000));
+            self.0.fetch_max(done, Ordering::Relaxed);
+        }
+
+        fn is_cancelled(&self) -> bool {
+            self.0.load(Ordering::Relaxed) >= self.1
+        }
+    }
+
+    let whole = Until(AtomicU64::new(0), u64::MAX);
+    assert_eq!(Levels::build(bumpy(30_000), &whole).unwrap(), Levels::of(bumpy(30_000)).unwrap());
+    assert_eq!(whole.0.load(Ordering::Relaxed), 30_000);
+    let some = Until(AtomicU64::new(0), 3_000);
+    assert!(matches!(Levels::build(bumpy(30_000), &some), Err(Error::Cancelled)));
+    assert!(some.0.load(Ordering::Relaxed) < 30_000);
 }
