@@ -205,7 +205,7 @@ impl App {
                 self.set_scene(scene, (method, *source), origin)?;
             }
             LoadEvent::Ready(scene, method, source) => {
-                self.options.events.emit(&Event::Ready { surfels: scene.count() });
+                self.options.events.emit(&Event::Ready { surfels: scene.point_count() });
                 (self.ui_state.loading, self.ui_state.error) = (None, None);
                 self.inputs = self.loading.take().unwrap_or(std::mem::take(&mut self.inputs));
                 self.failed_inputs = None;

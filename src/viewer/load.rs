@@ -1,4 +1,4 @@
-//! Background loading: a preview of many points first, then the whole scene, then its levels of detail.
+//! Background loading: a preview of many points first, then the whole scene with its levels of detail.
 
 use super::Loaded;
 use super::events::{Event, Events};
@@ -41,9 +41,9 @@ pub enum LoadEvent {
     Progress(&'static str, u64),
     /// Some of the points are on the device.
     Preview(Arc<Scene>, Method, Box<Source>),
-    /// The scene is on the device.
-    Ready(Arc<Scene>, Method, Box<Source>),
     /// The scene is on the device with its levels of detail, if it has any.
+    Ready(Arc<Scene>, Method, Box<Source>),
+    /// The changed scene is on the device with its levels of detail, if it has any.
     Levels(Option<Arc<Scene>>),
     /// Loading failed.
     Failed(Error),
@@ -109,7 +109,10 @@ impl Loader {
     pub fn rebuild_levels(&mut self, source: Source) {
         self.spawn(move |worker| {
             if let Some(device) = worker.device() {
-                worker.upload_levels(device, &source.visible_model());
+                // A load that is cancelled sends nothing.
+                if let Ok(levels) = levels::upload(device, &source.visible_model(), &Silent(worker)) {
+                    worker.send(LoadEvent::Levels(levels));
+                }
             }
         });
     }
@@ -176,19 +179,10 @@ impl Worker {
         let loaded = load(inputs, self)?;
         self.events.emit(&Event::Loaded { surfels: loaded.model.surfels.len() as u64 });
         let Some(device) = self.device() else { return Ok(()) };
-        self.at("uploading", 0, 1);
-        let (scene, method, source) = upload(loaded, device)?;
-        let model = source.visible_model();
+        let method = loaded.method;
+        let (scene, source) = upload(loaded, |model| levels::upload_with(device, model, self))?;
         self.send(LoadEvent::Ready(scene, method, source));
-        self.upload_levels(device, &model);
         Ok(())
-    }
-
-    fn upload_levels(&self, device: &Arc<Device>, model: &Model) {
-        let levels = levels::upload(device, model);
-        if !self.is_cancelled() {
-            self.send(LoadEvent::Levels(levels));
-        }
     }
 
     /// Waits for the device; `None` if the load is cancelled.
@@ -216,24 +210,37 @@ impl Progress for Worker {
     }
 }
 
+/// Work behind the scene that is shown: it is cancelled with its load, and its progress is not shown.
+struct Silent<'a>(&'a Worker);
+
+impl Progress for Silent<'_> {
+    fn at(&self, _: &'static str, _: u64, _: u64) {}
+
+    fn is_cancelled(&self) -> bool {
+        self.0.is_cancelled()
+    }
+}
+
 impl LoadListener for Worker {
     /// Uploads the preview. The previous state of reloaded inputs is shown instead; an error of a preview is one of the whole scene, too,
     /// which reports it.
     fn preview(&self, loaded: Loaded) {
         let Some(device) = self.device().filter(|_| !self.reload) else { return };
-        if let Ok((scene, method, source)) = upload(loaded, device) {
+        let method = loaded.method;
+        if let Ok((scene, source)) = upload(loaded, |model| Scene::upload(device, model).map(Arc::new)) {
             self.send(LoadEvent::Preview(scene, method, source));
         }
     }
 }
 
 /// Uploads what was loaded, coloured as it asks for.
-fn upload(loaded: Loaded, device: &Arc<Device>) -> Result<(Arc<Scene>, Method, Box<Source>)> {
-    let mut scene = Arc::new(Scene::upload(device, &loaded.model)?);
-    let method = loaded.method;
+fn upload(
+    loaded: Loaded,
+    to_device: impl FnOnce(&Model) -> Result<Arc<Scene>>,
+) -> Result<(Arc<Scene>, Box<Source>)> {
     let mut source = Box::new(Source::new(loaded));
-    source.apply(&mut scene, device)?;
-    Ok((scene, method, source))
+    let scene = to_device(&source.begin())?;
+    Ok((scene, source))
 }
 
 #[cfg(test)]
@@ -259,9 +266,9 @@ mod tests {
     }
 
     /// The events of a load up to its last one, without its progress.
-    fn until_levels(loader: &Loader, events: &Receiver<AppEvent>) -> Vec<LoadEvent> {
+    fn until_ready(loader: &Loader, events: &Receiver<AppEvent>) -> Vec<LoadEvent> {
         let mut all = Vec::new();
-        while !matches!(all.last(), Some(LoadEvent::Levels(_) | LoadEvent::Failed(_))) {
+        while !matches!(all.last(), Some(LoadEvent::Ready(..) | LoadEvent::Failed(_))) {
             let event = events.recv_timeout(Duration::from_secs(60)).unwrap();
             let AppEvent::Load(load, what) = event else { panic!("another event") };
             if loader.is_present(load) && !matches!(what, LoadEvent::Progress(..)) {
@@ -272,24 +279,21 @@ mod tests {
     }
 
     #[test]
-    fn the_preview_comes_first_and_the_levels_of_detail_last() {
-        let Some(device) = device("the_preview_comes_first_and_the_levels_of_detail_last") else { return };
+    fn the_preview_comes_first_and_then_the_scene_with_its_levels_of_detail() {
+        let name = "the_preview_comes_first_and_then_the_scene_with_its_levels_of_detail";
+        let Some(device) = device(name) else { return };
         let (mut loader, events) = loader(|_, listener| {
             listener.preview(loaded(100)?);
             loaded(30_000)
         });
         loader.start(Vec::new(), false);
         loader.use_device(&device);
-        let all = until_levels(&loader, &events);
-        let [LoadEvent::Preview(preview, ..), LoadEvent::Ready(whole, ..), LoadEvent::Levels(levels)] =
-            &all[..]
-        else {
+        let all = until_ready(&loader, &events);
+        let [LoadEvent::Preview(preview, ..), LoadEvent::Ready(whole, ..)] = &all[..] else {
             panic!("{} events", all.len())
         };
-        assert_eq!((preview.count(), whole.count()), (100, 30_000));
-        let levels = levels.as_ref().expect("so many points have levels");
-        assert!(levels.level_table().is_some_and(|table| table.starts().len() > 3));
-        assert_eq!(levels.point_count(), 30_000);
+        assert_eq!((preview.count(), whole.point_count()), (100, 30_000));
+        assert!(whole.level_table().is_some_and(|table| table.starts().len() > 3));
     }
 
     #[test]
@@ -309,10 +313,8 @@ mod tests {
         });
         loader.use_device(&device);
         loader.start(Vec::new(), false);
-        let all = until_levels(&loader, &events);
-        let [LoadEvent::Ready(..), LoadEvent::Levels(Some(levels))] = &all[..] else {
-            panic!("{} events", all.len())
-        };
+        let all = until_ready(&loader, &events);
+        let [LoadEvent::Ready(levels, ..)] = &all[..] else { panic!("{} events", all.len()) };
         let starts = levels.level_table().unwrap().starts();
         assert!(starts[0] == 20_000 && levels.count() < 32_000, "{starts:?} of {}", levels.count());
     }
@@ -342,10 +344,8 @@ mod tests {
         );
         loader.start(vec!["slow".into()], false);
         loader.start(vec!["fast".into()], false);
-        let all = until_levels(&loader, &events);
-        assert!(
-            matches!(&all[..], [LoadEvent::Ready(scene, ..), LoadEvent::Levels(_)] if scene.count() == 1000)
-        );
+        let all = until_ready(&loader, &events);
+        assert!(matches!(&all[..], [LoadEvent::Ready(scene, ..)] if scene.point_count() == 1000));
     }
 
     #[test]
@@ -369,7 +369,7 @@ mod tests {
         let (mut loader, events) = loader(|_, _| loaded(1000));
         loader.use_device(&device);
         loader.start(Vec::new(), false);
-        let all = until_levels(&loader, &events);
+        let all = until_ready(&loader, &events);
         let [LoadEvent::Failed(error @ Error::Memory { bytes: 40_000, .. })] = &all[..] else {
             panic!("the scene is loaded")
         };

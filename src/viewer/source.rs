@@ -284,6 +284,12 @@ impl Source {
         }
     }
 
+    /// The model of a first scene, in the wanted appearance.
+    pub fn begin(&mut self) -> Arc<Model> {
+        self.applied = self.wanted;
+        self.visible_model()
+    }
+
     /// Applies the wanted appearance to the scene; returns whether that changed it. After an error scene and appearance are as before.
     pub fn apply(&mut self, scene: &mut Arc<Scene>, device: &Arc<Device>) -> Result<bool> {
         self.take_property()?;
