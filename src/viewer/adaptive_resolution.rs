@@ -231,9 +231,9 @@ mod tests {
         of_lods(2.0)
     }
 
-    /// Eleven levels of detail of ever fewer surfels, of which the first has this level of detail, px.
+    /// Eleven levels of detail of ever fewer surfels, of which the first after that of full quality is this, px.
     fn of_lods(first: f64) -> Workload {
-        let level = |step: i32| if step == 0 { 0.0 } else { first * 1.2f64.powi(step - 1) };
+        let level = |step: i32| if step == 0 { Quality::FULL.lod } else { first * 1.2f64.powi(step - 1) };
         Workload::new(8e5, (0..11).map(|step| (level(step), 4e5 / 1.6f64.powi(step))))
     }
 
@@ -442,8 +442,9 @@ mod tests {
             }
             adaptive.quality(now, &workload)
         };
-        let (small, large) = (chosen(1.0), chosen(20.0));
-        assert!(small.lod > 0.0 && large.lod == 0.0 && small.scale > large.scale, "{small:?} {large:?}");
+        let (small, large) = (chosen(1.1), chosen(20.0));
+        let full = Quality::FULL.lod;
+        assert!(small.lod > full && large.lod == full && small.scale > large.scale, "{small:?} {large:?}");
     }
 
     #[test]

@@ -9,7 +9,10 @@ const SCALES: [f64; 5] = [0.63, 0.5, 0.4, 0.32, MIN_SCALE];
 /// The least resolution scale: coarser pictures are unreadable.
 pub const MIN_SCALE: f64 = 0.25;
 
-/// The finest level of detail above that of all points, px: finer ones differ less than is worth a change.
+/// The level of detail of full quality, px: the picture is as near to the exact one as that of all points (levels of detail in the guide's
+/// accuracy chapter), and costs no more than its pixels.
+const FULL_LOD: f64 = 1.0;
+/// The finest level of detail above the full one, px: finer ones differ less than is worth a change.
 const FINEST_LOD: f64 = 2.0;
 /// The coarsest level of detail, px: coarser ones are hardly faster.
 pub const COARSEST_LOD: f64 = 12.0;
@@ -32,15 +35,15 @@ const SCALED: f64 = 1.7e-5;
 pub struct Quality {
     /// Side of the picture as part of the full one's.
     pub scale: f64,
-    /// Level of detail, px of full resolution; 0 has all points.
+    /// Level of detail, px of full resolution.
     pub lod: f64,
     /// Whether pixels are filtered after shading and edges are mixed, as the settings say; otherwise splats have the whole low-pass filter.
     pub filtered: bool,
 }
 
 impl Quality {
-    /// Every pixel and every point.
-    pub const FULL: Self = Self { scale: 1.0, lod: 0.0, filtered: true };
+    /// Every pixel, and all points but those that share a pixel with others.
+    pub const FULL: Self = Self { scale: 1.0, lod: FULL_LOD, filtered: true };
 
     /// Whether this is finer than `other`.
     pub fn is_finer_than(self, other: Self) -> bool {
@@ -62,7 +65,7 @@ impl Quality {
 /// A level of detail.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Level {
-    /// Side of its cells at most, px of full resolution; 0 for all points.
+    /// Side of its cells at most, px of full resolution.
     lod: f64,
     /// Number of surfels drawn at most.
     surfels: f64,
@@ -73,7 +76,7 @@ struct Level {
 pub struct Workload {
     /// Pixels of the window's picture.
     pixels: f64,
-    /// The levels of detail, finest first; the first has all points.
+    /// The levels of detail, finest first; the first is that of full quality.
     levels: Vec<Level>,
 }
 
@@ -82,7 +85,7 @@ impl Workload {
     /// that are of no use are left out.
     pub fn new(pixels: f64, levels: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let mut list: Vec<Level> = Vec::new();
-        let of_use = |(lod, _): &(f64, f64)| *lod == 0.0 || (FINEST_LOD..=COARSEST_LOD).contains(lod);
+        let of_use = |(lod, _): &(f64, f64)| *lod == FULL_LOD || (FINEST_LOD..=COARSEST_LOD).contains(lod);
         for (lod, surfels) in levels.into_iter().filter(of_use) {
             if list.last().is_none_or(|finer| surfels < FEWER * finer.surfels) {
                 list.push(Level { lod, surfels });
@@ -117,5 +120,22 @@ impl Workload {
         std::iter::once(Quality::FULL)
             .chain(self.levels.iter().map(move |level| unfiltered(1.0, level.lod)))
             .chain(SCALES.map(move |scale| unfiltered(scale, coarsest)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn full_quality_draws_points_that_share_a_pixel_as_one() {
+        let levels = [(0.0, 9e6), (0.5, 4e6), (1.0, 1e6), (1.25, 7e5), (2.0, 3e5), (4.0, 8e4), (16.0, 5e3)];
+        let workload = Workload::new(8e5, levels);
+        assert_eq!(workload.surfels(Quality::FULL), 1e6);
+        assert_eq!(Quality::FULL.settings(&Settings::default()).lod, 1.0);
+        let chosen = Settings { lod: 3.0, ..Settings::default() };
+        assert_eq!(Quality::FULL.settings(&chosen).lod, 3.0);
+        let lods: Vec<f64> = workload.qualities().map(|quality| quality.lod).collect();
+        assert_eq!(lods[..4], [1.0, 1.0, 2.0, 4.0]);
     }
 }

@@ -203,14 +203,6 @@ impl ViewState {
         Some(Workload::new(width * height, levels))
     }
 
-    /// Number of surfels that a frame of a quality shows: all points, also outside the picture, or at most as many of a level of detail.
-    pub fn surfels(&self, quality: Quality, workload: &Workload) -> u64 {
-        match &self.view {
-            Some(view) if quality.lod == 0.0 => view.scene.point_count(),
-            _ => workload.surfels(quality) as u64,
-        }
-    }
-
     /// Whether a whole scene is shown.
     pub fn is_whole(&self) -> bool {
         self.view.as_ref().is_some_and(|view| !view.origin.preview)

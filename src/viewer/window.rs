@@ -130,7 +130,7 @@ impl WindowRenderer {
         let quality =
             workload.as_ref().map_or(Quality::FULL, |workload| self.adaptive.quality(start, workload));
         ui_state.scale = quality.scale;
-        ui_state.surfels = workload.as_ref().map_or(0, |workload| state.surfels(quality, workload));
+        ui_state.surfels = workload.as_ref().map_or(0, |workload| workload.surfels(quality) as u64);
         let size = state.viewport.size;
         let lay_out_again = self.hud.lay_out(&self.window, state, ui_state);
         if let Some(event) = ui_state.take_event() {
