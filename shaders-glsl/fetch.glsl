@@ -90,7 +90,7 @@ Sample sample_of(uint i, ivec2 pixel, uint nearest) {
     point_of(i, point);
     float radius = radius_of(i);
     // A circle of the ellipse's area.
-    if (ELLIPSES) radius *= sqrt(ellipse_of(i).w);
+    if (ELLIPSES && !is_billboard(i)) radius *= sqrt(ellipse_of(i).w);
     float least = PAPER ? 0.0 : LEAST_RADIUS / focal_scale() * (PERSPECTIVE ? point.distance : 1.0);
     vec3 normal = normal_of(i);
     Sample s = NO_SAMPLE;

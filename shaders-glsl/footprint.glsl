@@ -19,7 +19,7 @@
 #include "lib/surfel_weights.glsl"
 #include "lib/attributes.glsl"
 #else
-#include "lib/surfels.glsl"
+#include "lib/surfel_normal.glsl"
 #endif
 #define ORDER_ACCESS readonly
 #include "lib/order.glsl"
@@ -87,7 +87,7 @@ const float TURN_DEPTH = 0.25;
 // See least_key; 0 where the surface does not turn away.
 float least_key_of(uint i, Disc disc) {
     uint stored = curvature_of(i);
-    if (stored == 0 || disc.facing.x >= 0.0) return 0.0;
+    if (stored == 0 || disc.facing.x >= 0.0 || is_billboard(i)) return 0.0;
     float distance = PERSPECTIVE ? length(disc.hi) : 1.0;
     vec3 ray = PERSPECTIVE ? disc.hi / distance : view.forward_hi.xyz;
     // Down the tangent plane, as the eye sees it.
@@ -154,13 +154,19 @@ void store_screen_clip(uint i, Disc disc, vec2 anchor) {
     screen_clips[screen_clip_index(i)] = ScreenClip(lines[0], lines[1]);
 }
 
+// Major axis and aspect of surfel i's disc, which has the normal n; without ellipses, those of a circle of any axis.
+vec4 shape_of(uint i, vec3 n) {
+    if (!ELLIPSES) return vec4(vec3(0.0), 1.0);
+    return is_billboard(i) ? vec4(tangents(n)[0], 1.0) : ellipse_of(i);
+}
+
 // Loads surfel i relative to the eye; returns the cull reason so far.
 uint load_disc(uint i, out Disc disc) {
     if (!is_valid(i)) return INVALID;
     vec3 p = position_of(i), n = normal_of(i);
     if (HAS_LEVELS && !is_of_drawn_level(chunk.first_id + i, p)) return LEVEL;
     float r = radius_of(i);
-    vec4 shape = ELLIPSES ? ellipse_of(i) : vec4(vec3(0.0), 1.0);
+    vec4 shape = shape_of(i, n);
     disc.normal = n;
     disc.radius = r;
     disc.aspect = shape.w;

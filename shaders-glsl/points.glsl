@@ -7,7 +7,7 @@
 
 #define VERTICES 1
 #include "lib/instance.glsl"
-#include "lib/surfels.glsl"
+#include "lib/surfel_normal.glsl"
 #include "lib/point.glsl"
 #include "lib/raster_points.glsl"
 

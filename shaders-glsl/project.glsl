@@ -125,7 +125,7 @@ void main() {
 
 #else
 
-#include "lib/surfels.glsl"
+#include "lib/surfel_normal.glsl"
 #include "lib/point.glsl"
 
 void main() {

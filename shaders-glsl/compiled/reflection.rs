@@ -25,7 +25,7 @@ pub static ATTRIBUTE_VERTEX: Module = Module {
     name: "attribute_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("attribute_vertex.spv"),
-    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70],
+    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 22, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::WEIGHTS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -55,7 +55,7 @@ pub static ATTRIBUTE_CLIP_LINES_VERTEX: Module = Module {
     name: "attribute_clip_lines_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("attribute_clip_lines_vertex.spv"),
-    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 23, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70],
+    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 22, 23, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false), (&resource::WEIGHTS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -295,7 +295,7 @@ pub static FETCH_COMPUTE: Module = Module {
     name: "fetch_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_compute.spv"),
-    constants: &[0, 1, 5, 12, 13, 17, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73],
+    constants: &[0, 1, 5, 12, 13, 17, 22, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73],
     resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -325,7 +325,7 @@ pub static FETCH_RASTER_POINTS_COMPUTE: Module = Module {
     name: "fetch_raster_points_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_raster_points_compute.spv"),
-    constants: &[0, 1, 5, 12, 13, 17, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73],
+    constants: &[0, 1, 5, 12, 13, 17, 22, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73],
     resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST_ID, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -375,7 +375,7 @@ pub static FOOTPRINT_COMPUTE: Module = Module {
     name: "footprint_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("footprint_compute.spv"),
-    constants: &[0, 1, 2, 12, 13, 14, 15, 16, 21, 23, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 67, 68, 70, 73],
+    constants: &[0, 1, 2, 12, 13, 14, 15, 16, 21, 22, 23, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 67, 68, 70, 73],
     resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -385,7 +385,7 @@ pub static FOOTPRINT_TILES_COMPUTE: Module = Module {
     name: "footprint_tiles_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("footprint_tiles_compute.spv"),
-    constants: &[0, 1, 2, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 21, 23, 26, 27, 37, 45, 46, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 67, 68, 70, 73],
+    constants: &[0, 1, 2, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 21, 22, 23, 26, 27, 37, 45, 46, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 67, 68, 70, 73],
     resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::SPLAT_ATTRIBUTES, true), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::WEIGHTS, false), (&resource::SPLAT_BOXES, true), (&resource::ORDER, false), (&resource::VISIBLE_CLUSTERS, false), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -395,7 +395,7 @@ pub static NEAREST_VERTEX: Module = Module {
     name: "nearest_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("nearest_vertex.spv"),
-    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70],
+    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 22, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -425,7 +425,7 @@ pub static NEAREST_COVERAGE_VERTEX: Module = Module {
     name: "nearest_coverage_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("nearest_coverage_vertex.spv"),
-    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 23, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70],
+    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 22, 23, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -445,7 +445,7 @@ pub static NEAREST_CLIP_LINES_VERTEX: Module = Module {
     name: "nearest_clip_lines_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("nearest_clip_lines_vertex.spv"),
-    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 23, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70],
+    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 22, 23, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -625,7 +625,7 @@ pub static POINTS_VERTEX: Module = Module {
     name: "points_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("points_vertex.spv"),
-    constants: &[0, 1, 12, 13, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73],
+    constants: &[0, 1, 12, 13, 22, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73],
     resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -645,7 +645,7 @@ pub static PROJECT_COMPUTE: Module = Module {
     name: "project_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("project_compute.spv"),
-    constants: &[0, 1, 2, 12, 13, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 73],
+    constants: &[0, 1, 2, 12, 13, 22, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 73],
     resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::VISIBLE_CLUSTERS, false), (&resource::NEAREST, true), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -685,7 +685,7 @@ pub static PROJECT_COUNT_ONLY_COMPUTE: Module = Module {
     name: "project_count_only_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("project_count_only_compute.spv"),
-    constants: &[0, 1, 2, 12, 13, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73],
+    constants: &[0, 1, 2, 12, 13, 22, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73],
     resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -914,6 +914,8 @@ pub static VISIBILITY_SUBGROUPS_COMPUTE: Module = Module {
 pub mod constant {
     /// `BEYOND_CLIPS`, first in `shaders-glsl/attribute.glsl`.
     pub const BEYOND_CLIPS: u32 = 24;
+    /// `BILLBOARDS`, first in `shaders-glsl/attribute.glsl`.
+    pub const BILLBOARDS: u32 = 22;
     /// `BOUNDED`, first in `shaders-glsl/cull.glsl`.
     pub const BOUNDED: u32 = 64;
     /// `BOX_WEIGHTS`, first in `shaders-glsl/push.glsl`.

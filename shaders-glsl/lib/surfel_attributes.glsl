@@ -1,17 +1,12 @@
 // Attributes of a surfel: the vectors that targets sum, see lib/sums.glsl.
 
 #include "lib/shading.glsl"
-#include "lib/surfels.glsl"
+#include "lib/surfel_normal.glsl"
 
 #include "lib/shade.glsl"
 
 DEFINE_COLOURS(colour_of, COLOURS, colours, COLOUR_OFFSET, COLOUR_STRIDE)
 DEFINE_COORDINATES(coordinates_of, colours)
-
-// Unit vector from surfel i to the eye.
-vec3 to_eye_of(uint i) {
-    return PERSPECTIVE ? normalize(view.eye_hi.xyz - position_of(i) + view.eye_lo.xyz) : -view.forward_hi.xyz;
-}
 
 // Attributes that the two targets sum of surfel i; the sign of `epsilon` selects the visible side.
 void surfel_attributes(uint i, float epsilon, out vec3 attribute0, out vec3 attribute1) {

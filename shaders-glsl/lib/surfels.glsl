@@ -5,6 +5,7 @@
 
 layout(constant_id = 12) const bool ELLIPSES = false;
 layout(constant_id = 13) const bool TWO_SIDED = false;
+layout(constant_id = 22) const bool BILLBOARDS = false;  // a normal of 0 marks a billboard: a circle that faces the eye
 layout(constant_id = 50) const uint POSITION_OFFSET = 0;
 layout(constant_id = 51) const uint POSITION_STRIDE = 3;
 layout(constant_id = 52) const uint NORMAL_OFFSET = 0;
@@ -57,10 +58,8 @@ float curvature_along(uint curvature, vec2 tangent) {
     return largest * mix(shape.x, 1.0, along * along / max(dot(tangent, tangent), 1e-30));
 }
 
-// Unit normal.
-vec3 normal_of(uint i) {
-    vec3 normal = stored_normal(i);
-    return NORMALS == FLOAT_NORMALS ? normal : normalize(normal);
+bool is_billboard(uint i) {
+    return BILLBOARDS && stored_normal(i) == vec3(0.0);
 }
 
 float stored_radius(uint i) {
@@ -100,10 +99,13 @@ bool is_valid(uint i) {
     float radius = radius_of(i);
     if (!UNCHECKED) return radius > 0.0;
     if (!is_bounded(vec3(radius)) || !(radius > 0.0) || !is_bounded(position_of(i))) return false;
-    if (!is_unit(stored_normal(i), NORMALS == FLOAT_NORMALS ? UNIT_TOLERANCE : PACKED_UNIT_TOLERANCE)) return false;
+    bool billboard = is_billboard(i);
+    vec3 normal = stored_normal(i);
+    if (!billboard && !is_unit(normal, NORMALS == FLOAT_NORMALS ? UNIT_TOLERANCE : PACKED_UNIT_TOLERANCE)) return false;
     if (STORED_COLOURS != COLOURS_NONE && !is_bounded(stored_colour(i))) return false;
-    if (!ELLIPSES) return true;
+    if (!ELLIPSES || billboard) return true;
+    if (NORMALS != FLOAT_NORMALS) normal = normalize(normal);
     vec4 shape = ellipse_of(i);
-    bool orthogonal = is_unit(shape.xyz, UNIT_TOLERANCE) && is_unit(cross(normal_of(i), shape.xyz), UNIT_TOLERANCE);
+    bool orthogonal = is_unit(shape.xyz, UNIT_TOLERANCE) && is_unit(cross(normal, shape.xyz), UNIT_TOLERANCE);
     return orthogonal && is_bounded(vec3(shape.w)) && shape.w > 0.0 && shape.w <= 1.0;
 }

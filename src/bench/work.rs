@@ -29,7 +29,8 @@ pub fn drawn(surfels: &Surfels, camera: &Camera, settings: &Settings) -> u64 {
         let clip = to_clip * position.extend(1.0);
         let is_inside = clip.w > 0.0 && clip.x.abs() <= clip.w && clip.y.abs() <= clip.w;
         let to_eye = eye.truncate() - eye.w * position;
-        is_inside && (settings.cull == Cull::None || surfels.normals[i].as_dvec3().dot(to_eye) > 0.0)
+        let faces_eye = || surfels.is_billboard(i) || surfels.normals[i].as_dvec3().dot(to_eye) > 0.0;
+        is_inside && (settings.cull == Cull::None || faces_eye())
     };
     (0..surfels.len()).into_par_iter().filter(is_drawn).count() as u64
 }

@@ -57,6 +57,10 @@ impl<'a> SurfelGrid<'a> {
     }
 
     fn overlap(&self, surfel: u32) -> f64 {
+        if self.surfels.is_billboard(surfel as usize) {
+            // Alone: it belongs to no surface.
+            return 1.0;
+        }
         let centre = Surfel::of(self.surfels, surfel as usize);
         let mut hits = Vec::new();
         for (&level, cells) in &self.levels {

@@ -65,6 +65,8 @@ impl WeightView {
     }
 
     fn sample(&self, index: usize, surfel: &Surfel) -> Option<Sample> {
+        let billboard = surfel.normal == DVec3::ZERO;
+        let surfel = &self.projector.facing_eye(surfel);
         let u = surfel.radius * surfel.major;
         let v = surfel.aspect * surfel.normal.cross(u);
         let tolerance = f64::from(self.settings.epsilon) * surfel.radius;
@@ -81,7 +83,9 @@ impl WeightView {
         if extent(u)?.min(extent(v)?) < LEAST_RADIUS {
             return None;
         }
-        let corners = self.is_border(&square, sum).then(|| self.corners(&square, sum).map(|w| w as f32));
+        // The square of a billboard turns with the eye.
+        let has_corners = !billboard && self.is_border(&square, sum);
+        let corners = has_corners.then(|| self.corners(&square, sum).map(|w| w as f32));
         Some(Sample { surfel: index as u32, sum: sum as f32, corners })
     }
 

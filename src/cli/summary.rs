@@ -70,7 +70,7 @@ pub fn culled_backs(surfels: &Surfels, camera: &Camera, settings: &Settings) -> 
         } else {
             forward
         };
-        ray.dot(surfels.normals[i].as_dvec3()) >= 0.0 && !is_two_sided(i)
+        ray.dot(surfels.normals[i].as_dvec3()) >= 0.0 && !is_two_sided(i) && !surfels.is_billboard(i)
     };
     let part = (0..surfels.len()).filter(is_back).count() as f64 / surfels.len().max(1) as f64;
     (part > MANY).then(|| {

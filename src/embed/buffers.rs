@@ -52,6 +52,8 @@ pub struct Buffers {
     pub normals: Values,
     /// Radii.
     pub radii: Radii,
+    /// Whether a normal of 0 marks a billboard: a circle that faces the eye. Otherwise such a surfel is invalid.
+    pub billboards: bool,
     /// Whether a radius below 0 marks a two-sided surfel, which is never back-facing; its radius is the absolute value.
     pub two_sided: bool,
     /// Shapes of elliptical discs: `R32G32B32A32_SFLOAT`, the direction of the longer axis and the aspect ([`crate::geometry::Ellipse`]).
@@ -112,6 +114,7 @@ impl Scene {
                 radii,
                 largest,
                 two_sided,
+                billboards: buffers.billboards,
                 ellipses: ellipses.map(|ellipses| stream("ellipses", ellipses, SHAPES)).transpose()?,
                 colours: colours.map(|colours| stream("colours", colours, &sizes(COLOURS))).transpose()?,
                 colour_stream,

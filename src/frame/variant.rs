@@ -124,6 +124,8 @@ pub struct SceneVariant {
     pub clips: bool,
     /// Some surfels are two-sided, so never culled as back faces.
     pub two_sided: bool,
+    /// Some surfels are billboards.
+    pub billboards: bool,
     /// Kernels are multiplied by the scene's normalization weights.
     pub weights: bool,
     /// Some weights are at the corners of surfels' squares.
@@ -388,6 +390,7 @@ impl SceneVariant {
             curvatures: streams.curvatures && frame.curvatures,
             clips: streams.clips,
             two_sided: streams.two_sided,
+            billboards: streams.billboards,
             weights: weights.is_some(),
             corners: weights == Some(true),
             colours: blended(streams.colours),
@@ -455,6 +458,7 @@ impl SceneVariant {
             .with(constant::STORED_COLOURS, self.unchecked.map_or(0, |colours| colours as u32))
             .with(constant::ELLIPSES, self.ellipses)
             .with(constant::TWO_SIDED, self.two_sided)
+            .with(constant::BILLBOARDS, self.billboards)
             .with(constant::HAS_LEVELS, self.levels)
             .with(constant::CURVATURES, self.curvatures)
             .with(constant::CLIPS, self.clips)

@@ -19,7 +19,8 @@ pub struct Cloud {
     pub ellipses: Option<Vec<Ellipse>>,
     /// Curvatures: see [`Surfels::curvatures`](super::Surfels::curvatures); need normals.
     pub curvatures: Option<Vec<Curvature>>,
-    /// Points whose normals have no known side.
+    /// Points whose normals have no known side. With a radius and without a normal they are billboards
+    /// ([`Surfels::is_billboard`](super::Surfels::is_billboard)).
     pub two_sided: Option<Vec<bool>>,
     /// Clips of discs at sharp edges; need normals.
     pub clips: Option<Clips>,

@@ -8,14 +8,14 @@ use glam::{DVec3, Vec3};
 /// Surfels as a structure of arrays; every array has one entry per surfel.
 ///
 /// A surfel is a disc with centre, unit normal and radius. The radius is the extent of the splat: `r = F σ`, with the cut-off `F` and the
-/// kernel's standard deviation `σ`. Invalid surfels ([`Surfels::is_valid`]) are not drawn, and are counted.
+/// kernel's standard deviation `σ`. A surfel whose normal is 0 is a billboard, which faces the eye. Invalid surfels ([`Surfels::is_valid`]) are not drawn, and are counted.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surfels {
     /// Origin of [`Surfels::positions`], in the file's unit and frame: keeps large (geodetic) coordinates exact while positions are f32.
     pub origin: DVec3,
     /// Centres, relative to `origin`.
     pub positions: Vec<Vec3>,
-    /// Unit normals.
+    /// Unit normals, or 0 for billboards ([`Surfels::is_billboard`]).
     pub normals: Vec<Vec3>,
     /// Radii of the discs, in the positions' unit; of elliptical discs, the longer semi-axes.
     pub radii: Vec<f32>,
@@ -83,6 +83,12 @@ impl Surfels {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
+    }
+
+    /// Whether surfel `index` is a billboard: a circle that faces the eye of every frame, for a point on no surface. Its normal is 0. `false`
+    /// beyond the end.
+    pub fn is_billboard(&self, index: usize) -> bool {
+        self.normals.get(index) == Some(&Vec3::ZERO)
     }
 
     /// Validates the lengths of the arrays, the origin, and the indices of clips, corner weights and materials.

@@ -14,15 +14,18 @@ impl Surfels {
 
     /// Whether surfel `index` can be drawn: no attribute is NaN, infinite or beyond [`Surfels::LARGEST`], the radius is above 0, the normal
     /// is a unit vector, and the longer axis of an ellipse is a unit vector orthogonal to it, with an aspect above 0 and up to 1. The lines
-    /// of its clip, if any, are valid, and its normalization weights, if any, are above 0. `false` beyond the end of any array.
+    /// of its clip, if any, are valid, and its normalization weights, if any, are above 0. A [billboard](Surfels::is_billboard) has no
+    /// normal, no clip lines and no corner weights, and its ellipse is not read. `false` beyond the end of any array.
     pub fn is_valid(&self, index: usize) -> bool {
         let bounded = |v: Vec3| v.abs().cmple(Vec3::splat(Self::LARGEST)).all();
         let at = |values: &[Vec3]| values.get(index).copied();
         let (Some(position), Some(normal)) = (at(&self.positions), at(&self.normals)) else { return false };
         let sized = self.radii.get(index).is_some_and(|&radius| radius > 0.0 && radius <= Self::LARGEST);
+        let billboard = self.is_billboard(index);
         let shaped = self.ellipses.as_ref().is_none_or(|ellipses| {
             let fits = |e: &super::Ellipse| {
-                is_unit(e.major) && is_unit(normal.cross(e.major)) && e.aspect > 0.0 && e.aspect <= 1.0
+                let fits_normal = is_unit(e.major) && is_unit(normal.cross(e.major));
+                billboard || fits_normal && e.aspect > 0.0 && e.aspect <= 1.0
             };
             ellipses.get(index).is_some_and(fits)
         });
@@ -30,7 +33,9 @@ impl Surfels {
             clips.of.get(index).is_some_and(|clip| *clip == 0)
                 || clips.get(index).is_some_and(|clip| fits_clip(clip, normal))
         });
-        let weighted = self.weights.as_ref().is_none_or(|weights| weights.is_valid(index, Self::LARGEST));
+        let weighted = self.weights.as_ref().is_none_or(|weights| {
+            weights.is_valid(index, Self::LARGEST) && !(billboard && weights.corners_of(index).is_some())
+        });
         let textured = match &self.texture {
             Some(texture) => texture.coordinates.get(index).is_some_and(|at| at.is_finite()),
             None => true,
@@ -40,7 +45,8 @@ impl Surfels {
             Some(Colours::Srgb8(colours)) => index < colours.len(),
             None => true,
         };
-        bounded(position) && is_unit(normal) && sized && shaped && clipped && weighted && coloured && textured
+        let oriented = billboard || is_unit(normal);
+        bounded(position) && oriented && sized && shaped && clipped && weighted && coloured && textured
     }
 
     /// Number of invalid surfels.
@@ -176,5 +182,19 @@ mod tests {
             assert_eq!((bounds.centre(), bounds.radius), (DVec3::new(100.0, 0.0, 0.0), 0.5), "change {i}");
         }
         assert!(alone.radius > 1.3 && !two().is_valid(2));
+    }
+
+    #[test]
+    fn billboards_have_neither_clips_nor_corner_weights_and_any_ellipse() {
+        let mut surfels = two();
+        surfels.normals[1] = Vec3::ZERO;
+        assert!(surfels.is_billboard(1) && !surfels.is_billboard(0) && !surfels.is_billboard(2));
+        assert!(!surfels.is_valid(1));
+        surfels.clips.as_mut().unwrap().of[1] = 0;
+        assert!(!surfels.is_valid(1));
+        surfels.weights.as_mut().unwrap().corners.clear();
+        assert!(surfels.is_valid(1));
+        surfels.ellipses.as_mut().unwrap()[1] = Ellipse { major: Vec3::NAN, aspect: 7.0 };
+        assert!(surfels.is_valid(1) && surfels.count_invalid() == 0);
     }
 }

@@ -51,7 +51,7 @@ enum Cone {
     Empty,
     /// Unit axis, and cosine of the largest angle of a normal from it, above 0.
     Of(Vec3, f32),
-    /// All directions: normals differ by more.
+    /// All directions: normals differ by more, or some are of billboards.
     All,
 }
 
@@ -186,8 +186,11 @@ impl ClusterBounds {
 }
 
 impl Cone {
-    /// The cone with these normals; those that are not finite are invalid.
+    /// The cone with these normals; those that are not finite are invalid. Billboards face every eye.
     fn with(self, normals: &[Vec3]) -> Self {
+        if normals.contains(&Vec3::ZERO) {
+            return Self::All;
+        }
         let units =
             || normals.iter().map(|normal| normal.normalize_or_zero()).filter(|unit| *unit != Vec3::ZERO);
         let (old, cosine) = match self {
@@ -252,6 +255,12 @@ mod tests {
         assert_eq!(found.with(0..100, &normals, 0..64).words().high[3], NO_CONE);
         surfels.normals[20] = Vec3::NEG_Z;
         assert_eq!(bounds(&surfels, None).cone, Cone::All);
+        // Billboards face every eye.
+        surfels = sheet();
+        surfels.normals[20] = Vec3::ZERO;
+        assert_eq!(bounds(&surfels, None).words().high[3], NO_CONE);
+        let front = Changes { normals: Some(&[Vec3::Z]), ..Changes::default() };
+        assert_eq!(bounds(&surfels, None).with(20..21, &front, 0..64).cone, Cone::All);
         surfels.positions = vec![Vec3::NAN; 100];
         assert!(bounds(&surfels, None).words().low[3] < 0.0);
     }

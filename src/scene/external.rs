@@ -18,6 +18,7 @@ pub(crate) struct ExternalBuffers {
     /// Largest radius, if known.
     pub largest: Option<f32>,
     pub two_sided: bool,
+    pub billboards: bool,
     pub ellipses: Option<Stream>,
     pub colours: Option<Stream>,
     pub colour_stream: ColourStream,
@@ -54,6 +55,7 @@ impl Scene {
             curvatures: false,
             radii: external.radii,
             two_sided: external.two_sided,
+            billboards: AtomicBool::new(external.billboards),
             ellipses: external.ellipses,
             clips: None,
             levels: None,

@@ -59,6 +59,8 @@ pub struct Scene {
     /// Radii: negative for two-sided surfels, in a scene that has any; 0 for invalid surfels.
     radii: Stream,
     two_sided: bool,
+    /// Whether some surfels may be billboards: at the upload, or by an update.
+    billboards: AtomicBool,
     ellipses: Option<Stream>,
     clips: Option<ClipStream>,
     /// Which surfels stand for others from afar.
@@ -175,6 +177,7 @@ impl Scene {
             normal_stream: NormalStream::Float,
             radii: stream("radii", bytemuck::cast_slice(&marked_radii(surfels, invalid)), SCALAR)?,
             two_sided: surfels.two_sided.is_some(),
+            billboards: AtomicBool::new(surfels.normals.contains(&Vec3::ZERO)),
             ellipses: ellipses
                 .map(|ellipses| stream("ellipses", bytemuck::cast_slice(ellipses), ELLIPSE))
                 .transpose()?,
@@ -284,6 +287,7 @@ impl Scene {
             ellipses: self.ellipses.is_some(),
             curvatures: self.curvatures,
             two_sided: self.two_sided,
+            billboards: self.billboards.load(Ordering::Relaxed),
             clips: self.clips.is_some(),
             weights: self.weights.as_ref().map(|weights| weights.corners),
             colours: self.colour_stream,
@@ -430,7 +434,7 @@ fn warn_of_primitives(invalid: usize, count: usize) {
 
 fn warn_of(invalid: usize, count: usize) {
     log::warn!(
-        "{invalid} of {count} surfels are invalid and will not be drawn: a value is NaN, infinite or beyond {:e}, a normal or an axis is not a unit vector, a radius or an aspect is not above 0, a clip line is not in the tangent plane",
+        "{invalid} of {count} surfels are invalid and will not be drawn: a value is NaN, infinite or beyond {:e}, a normal is neither a unit vector nor 0, an axis is not a unit vector, a radius or an aspect is not above 0, a clip line is not in the tangent plane",
         Surfels::LARGEST
     );
 }

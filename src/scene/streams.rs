@@ -12,6 +12,8 @@ pub struct Streams {
     pub curvatures: bool,
     /// Some surfels are two-sided.
     pub two_sided: bool,
+    /// Some surfels are billboards: circles that face the eye, with a normal of 0.
+    pub billboards: bool,
     /// Some discs have clip lines.
     pub clips: bool,
     /// `None` without normalization weights; otherwise whether some surfels have corner weights.
@@ -43,6 +45,7 @@ impl Streams {
             ellipses: false,
             curvatures: false,
             two_sided: false,
+            billboards: false,
             clips: false,
             weights: None,
             colours,

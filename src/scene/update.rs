@@ -17,7 +17,7 @@ use std::sync::atomic::Ordering;
 pub struct Changes<'a> {
     /// Centres, relative to the scene's origin.
     pub positions: Option<&'a [Vec3]>,
-    /// Unit normals.
+    /// Unit normals, or 0 for billboards.
     pub normals: Option<&'a [Vec3]>,
     /// Curvatures, together with `normals`, in a scene that has curvatures. New normals without curvatures have unknown ones.
     pub curvatures: Option<&'a [Curvature]>,
@@ -61,6 +61,9 @@ impl Scene {
         if revived || changes.may_be_invalid(self.ellipses.is_some()) {
             // Before the writes: the new values may be drawn.
             self.unchecked.store(true, Ordering::Relaxed);
+        }
+        if changes.normals.is_some_and(|normals| normals.contains(&Vec3::ZERO)) {
+            self.billboards.store(true, Ordering::Relaxed);
         }
         if let (Some(known), Some(radii)) = (&self.largest, changes.radii) {
             // The bits of non-negative floats are in the order of the floats.
@@ -177,7 +180,7 @@ impl Changes<'_> {
         let turned = ellipses && (self.normals.is_some() || self.ellipses.is_some());
         turned
             || !self.positions.unwrap_or_default().iter().all(is_bounded)
-            || !self.normals.unwrap_or_default().iter().all(|normal| is_unit(*normal))
+            || !self.normals.unwrap_or_default().iter().all(|&normal| normal == Vec3::ZERO || is_unit(normal))
             || !self.ellipses.unwrap_or_default().iter().all(shaped)
             || match self.colours {
                 Some(Colours::Linear(colours)) => !colours.iter().all(|colour| is_bounded(&(*colour).into())),

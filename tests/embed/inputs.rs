@@ -1,7 +1,7 @@
 //! Surfels of the tests of changing scenes.
 
 use crate::support::sampling::{Random, bumpy_sphere, forget_sides, narrow, paint_linear, paint_srgb};
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use surfel::geometry::{Colours, Surfels};
 
 pub fn sphere(count: usize) -> Surfels {
@@ -54,7 +54,7 @@ pub fn spoil(surfels: &mut Surfels) -> usize {
         |s, i| s.positions[i].y = f32::NAN,
         |s, i| s.positions[i].z = f32::NEG_INFINITY,
         |s, i| s.positions[i].x = -1.1e15,
-        |s, i| s.normals[i] = Vec3::ZERO,
+        |s, i| s.normals[i] *= 0.5,
         |s, i| s.normals[i] *= 1.01,
         |s, i| s.normals[i].x = f32::NAN,
         |s, i| s.radii[i] = 0.0,

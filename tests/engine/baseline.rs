@@ -163,6 +163,8 @@ struct Point {
     index: usize,
     /// Whether it is certainly visible there: neither at the pixel's edge nor at a clipping plane.
     certain: bool,
+    /// World space.
+    normal: Vec3,
 }
 
 /// By pixel, all surfels whose centres lie in it or may do so by rounding.
@@ -176,8 +178,11 @@ fn points(surfels: &Surfels, camera: &Camera, size: [u32; 2], settings: &Setting
         let depth = range.forward * eye.z;
         let tolerance = 1e-6 * depth.abs();
         let within = |tolerance: f64| depth >= range.near + tolerance && depth <= range.far - tolerance;
-        let normal = camera.view.transform_vector3(surfels.normals[index].as_dvec3());
         let ray = if range.perspective { eye } else { DVec3::Z * range.forward };
+        let normal = match surfels.is_billboard(index) {
+            true => -ray.normalize(),
+            false => camera.view.transform_vector3(surfels.normals[index].as_dvec3()),
+        };
         let two_sided = surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[index]);
         if !within(-tolerance) || settings.cull == Cull::Back && normal.dot(ray) >= 0.0 && !two_sided {
             continue;
@@ -187,9 +192,10 @@ fn points(surfels: &Surfels, camera: &Camera, size: [u32; 2], settings: &Setting
         let mut there: Vec<[i64; 2]> = around.map(|at| at.map(|v| v.floor() as i64)).to_vec();
         there.dedup();
         let certain = there.len() == 1 && within(tolerance);
+        let normal = camera.view.inverse().transform_vector3(normal).as_vec3();
         for [x, y] in there {
             if (0..i64::from(size[0])).contains(&x) && (0..i64::from(size[1])).contains(&y) {
-                pixels[(y * i64::from(size[0]) + x) as usize].push(Point { depth, index, certain });
+                pixels[(y * i64::from(size[0]) + x) as usize].push(Point { depth, index, certain, normal });
             }
         }
     }
@@ -205,7 +211,6 @@ fn shows(picture: &Picture, i: usize, there: &[Point], surfels: &Surfels) -> boo
     }
     there.iter().any(|p| {
         let tolerance = 1e-6 * p.depth.abs();
-        let own = surfels.normals[p.index];
         let colour = match surfels.colours.as_ref().unwrap() {
             Colours::Linear(colours) => Vec3::from(colours[p.index]),
             Colours::Srgb8(_) => unreachable!("the test's scenes have linear colours"),
@@ -213,7 +218,7 @@ fn shows(picture: &Picture, i: usize, there: &[Point], surfels: &Surfels) -> boo
         let shown = Vec3::from_slice(&picture.colour[i]);
         (f64::from(depth) - p.depth).abs() <= tolerance
             && p.depth <= nearest + 2.0 * tolerance
-            && own.dot(Vec3::from(normal)).abs() > 1.0 - 1e-6
+            && p.normal.dot(Vec3::from(normal)).abs() > 1.0 - 1e-6
             && shown.abs_diff_eq(colour, 1e-6)
     })
 }

@@ -152,7 +152,7 @@ fn invalid_surfels_neither_show_nor_hide() {
     bad(&mut mixed, 0.0, Vec3::Z);
     bad(&mut mixed, -0.5, Vec3::Z);
     bad(&mut mixed, f32::NAN, Vec3::Z);
-    bad(&mut mixed, 0.5, Vec3::ZERO);
+    bad(&mut mixed, 0.5, 0.5 * Vec3::Z);
     // Nothing wrong, but without a weight.
     bad(&mut mixed, 1e-21, Vec3::Z);
     let view = camera(DVec3::Z * 9.0);

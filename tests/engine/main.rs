@@ -10,6 +10,7 @@ mod bench_report;
 mod bench_schema;
 mod bench_session;
 mod bench_text;
+mod billboards;
 mod capture;
 mod creases;
 mod discs;

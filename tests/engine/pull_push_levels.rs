@@ -392,11 +392,12 @@ fn points_smaller_than_a_pixel() {
 }
 
 #[test]
-fn two_sided_ellipses_and_no_colours() {
+fn two_sided_ellipses_billboards_and_no_colours() {
     let named = |name: &str| cases().into_iter().find(|case: &Case| case.name == name).unwrap().surfels;
     let list = [
         ("two-sided", named("two-sided"), Shading::Lit),
         ("ellipses", named("ellipses"), Shading::Colour),
+        ("billboards", named("billboards"), Shading::Lit),
         ("no colours", Surfels { colours: None, ..bumpy(10_000) }, Shading::Lit),
     ];
     assert_passes(list, if_whole(&SIZES[2..3], &SHORT_SIZES[2..]), Precision::Full);

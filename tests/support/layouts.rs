@@ -103,6 +103,7 @@ impl Layout {
             positions: values(self.positions),
             normals: values(self.normals),
             radii: self.radii.map_or(Radii::All(surfels.radii[0]), |place| Radii::Each(values(place))),
+            billboards: surfels.normals.contains(&Vec3::ZERO),
             two_sided: surfels.two_sided.is_some(),
             ellipses: self.ellipses.map(values),
             colours: self.colours.map(values),
@@ -116,7 +117,7 @@ impl Layout {
 
     /// Surfels whose values are those that the buffer holds of `surfels`.
     pub fn held(&self, mut surfels: Surfels) -> Surfels {
-        let unit = |n: &Vec3| unpacked(&packed(*n, self.normals.2), self.normals.2).normalize();
+        let unit = |n: &Vec3| unpacked(&packed(*n, self.normals.2), self.normals.2).normalize_or_zero();
         if !is_float(self.normals.2) {
             surfels.normals = surfels.normals.iter().map(unit).collect();
         }

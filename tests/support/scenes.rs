@@ -31,7 +31,10 @@ pub struct Case {
 pub fn cases() -> Vec<Case> {
     let circles =
         [horizon(), edge_on(), sub_pixel(), huge(), inside(), far_origin(), orthographic(), off_centre()];
-    let cases = circles.into_iter().chain([ellipses(), two_sided(), clipped()]).map(Case::without_undecided);
+    let cases = circles
+        .into_iter()
+        .chain([ellipses(), two_sided(), billboards(), clipped()])
+        .map(Case::without_undecided);
     // Every splat is widened, so that none is indifferent to the filter.
     cases
         .map(|case| Case { settings: Settings { widen: Widen::All, ..case.settings.clone() }, ..case })
@@ -51,7 +54,8 @@ impl Case {
         let undecided = 1e-4 + 5e-11 * self.surfels.origin.length();
         let decided = |i: &usize| {
             let surfel = Surfel::of(&self.surfels, *i);
-            self.cameras.iter().all(|camera| tilt(camera, &surfel) > undecided)
+            surfel.normal == DVec3::ZERO
+                || self.cameras.iter().all(|camera| tilt(camera, &surfel) > undecided)
         };
         let kept: Vec<usize> = (0..self.surfels.len()).filter(decided).collect();
         let s = &mut self.surfels;
@@ -300,6 +304,36 @@ fn two_sided() -> Case {
     ];
     let settings = Settings { cull: Cull::Back, epsilon: 0.5, ..splats_alone() };
     Case { name: "two-sided", surfels, cameras, settings, size }
+}
+
+/// Ellipses on a surface and circles that face the eye, around it and within, where surfels that face away are culled.
+fn billboards() -> Case {
+    let (mut random, size) = (Random(12), [288, 256]);
+    let mut surfels = bumpy_sphere(4000, &mut random);
+    for _ in 0..1500 {
+        push(&mut surfels, 1.3 * random.vector(), DVec3::Z, 0.01 + 0.05 * random.unit());
+    }
+    stretch(&mut surfels, &mut random);
+    surfels
+        .normals
+        .iter_mut()
+        .enumerate()
+        .filter(|(i, _)| i % 2 == 0)
+        .for_each(|(_, normal)| *normal = glam::Vec3::ZERO);
+    paint_linear(&mut surfels, &mut random);
+    let parallel = Camera::orthographic(
+        [DVec3::new(2.0, 0.5, 2.0), DVec3::ZERO, DVec3::Y],
+        2.6,
+        288.0 / 256.0,
+        [0.5, 6.0],
+    );
+    let cameras = [
+        camera([-1.5, 1.8, 1.1], [0.0, 0.0, 0.0], 45.0, size, 0.1),
+        parallel.unwrap(),
+        camera([0.1, -0.2, 0.15], [1.0, 0.3, 0.4], 80.0, size, 0.01),
+    ];
+    let settings = Settings { cull: Cull::Back, epsilon: 0.5, ..splats_alone() };
+    Case { name: "billboards", surfels, cameras, settings, size }
 }
 
 /// Discs that end at a line, at a convex and at a concave corner; a third of them are whole.

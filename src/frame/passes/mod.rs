@@ -124,6 +124,7 @@ mod tests {
                 ellipses: rich,
                 curvatures: rich,
                 two_sided: rich,
+                billboards: rich,
                 clips: rich,
                 weights: rich.then_some(true),
                 colours: if rich { ColourStream::Linear } else { ColourStream::None },

@@ -13,7 +13,7 @@ const DISC_VARIANCE: f64 = 0.25;
 /// Least aspect of an aggregated ellipse: points along a line span no area.
 const LEAST_ASPECT: f64 = 0.2;
 
-/// Sums over discs, weighted by area.
+/// Sums over discs, weighted by area. Billboards have no normal.
 #[derive(Clone, Debug)]
 pub(super) struct Aggregate {
     /// The cell, in sides of its level.
@@ -25,6 +25,7 @@ pub(super) struct Aggregate {
     /// Σ area (p pᵀ + covariance of the disc).
     second: DMat3,
     two_sided: bool,
+    billboard: bool,
     /// Point of the largest disc.
     point: u32,
     largest: f32,
@@ -39,7 +40,12 @@ impl Aggregate {
         let [radius, aspect] = [surfels.radii[at], ellipse.aspect].map(f64::from);
         let major = ellipse.major.as_dvec3();
         let minor = n.cross(major);
-        let disc = DISC_VARIANCE * radius * radius * (outer(major) + aspect * aspect * outer(minor));
+        // A billboard extends as far in every direction.
+        let (shape, aspect) = match surfels.is_billboard(at) {
+            true => (DMat3::IDENTITY, 1.0),
+            false => (outer(major) + aspect * aspect * outer(minor), aspect),
+        };
+        let disc = DISC_VARIANCE * radius * radius * shape;
         let area = (radius * radius * aspect).max(f64::MIN_POSITIVE);
         Self {
             cell: IVec3::ZERO,
@@ -49,6 +55,7 @@ impl Aggregate {
             colour: area * linear(surfels, i, light).as_dvec3(),
             second: area * (outer(p) + disc),
             two_sided: surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[at]),
+            billboard: surfels.is_billboard(at),
             point: i,
             largest: surfels.radii[at],
         }
@@ -59,14 +66,16 @@ impl Aggregate {
         Self { cell, ..self }
     }
 
-    /// The sums of those whose normals are on the side of the first one's, and of the others.
-    pub fn merged(members: &[Self]) -> [Option<Self>; 2] {
-        let reference = members[0].normal;
+    /// The sums of those whose normals are on the side of the first one's, of those on the other side, and of billboards.
+    pub fn merged(members: &[Self]) -> [Option<Self>; 3] {
+        let of_surface = || members.iter().filter(|m| !m.billboard);
+        let reference = of_surface().next().map_or(DVec3::ZERO, |first| first.normal);
         let side = |front: bool| {
-            let own = members.iter().filter(|m| (m.two_sided || m.normal.dot(reference) >= 0.0) == front);
+            let own = of_surface().filter(|m| (m.two_sided || m.normal.dot(reference) >= 0.0) == front);
             own.map(|m| m.turned_to(reference)).reduce(Self::with)
         };
-        [side(true), side(false)]
+        let billboards = members.iter().filter(|m| m.billboard).cloned();
+        [side(true), side(false), billboards.reduce(Self::with)]
     }
 
     /// Two-sided discs have a normal of either sign.
@@ -85,6 +94,7 @@ impl Aggregate {
             colour: self.colour + other.colour,
             second: self.second + other.second,
             two_sided: self.two_sided || other.two_sided,
+            billboard: self.billboard,
             point: if larger { other.point } else { self.point },
             largest: self.largest.max(other.largest),
         }
@@ -94,6 +104,9 @@ impl Aggregate {
     pub fn disc(&self, surfels: &Surfels, side: f32) -> Disc {
         let mean = self.position / self.area;
         let position = within(mean.as_vec3(), self.cell, side);
+        if self.billboard {
+            return self.billboard_at(position, self.second * (1.0 / self.area) - outer(mean));
+        }
         let normal = self.normal.as_vec3().try_normalize().unwrap_or(surfels.normals[self.point as usize]);
         let covariance = self.second * (1.0 / self.area) - outer(mean);
         let (major, [first, second]) = semi_axes(covariance, normal.as_dvec3());
@@ -105,10 +118,22 @@ impl Aggregate {
         let axis = major.as_vec3();
         let major = (axis - axis.dot(normal) * normal).try_normalize();
         let ellipse = major.map_or(Ellipse::circle(normal), |major| Ellipse { major, aspect: aspect as f32 });
+        self.disc_of(position, normal, radius as f32, ellipse)
+    }
+
+    /// The billboard with the area of all, or that covers their extent where this is less: scattered points hide what is behind them in part.
+    fn billboard_at(&self, position: Vec3, covariance: DMat3) -> Disc {
+        let variance = (covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z) / 3.0;
+        let extent = GROWTH * (variance.max(0.0) / DISC_VARIANCE).sqrt();
+        let radius = self.area.sqrt().min(extent) as f32;
+        self.disc_of(position, Vec3::ZERO, radius.max(self.largest), Ellipse::circle(Vec3::ZERO))
+    }
+
+    fn disc_of(&self, position: Vec3, normal: Vec3, radius: f32, ellipse: Ellipse) -> Disc {
         Disc {
             position,
             normal,
-            radius: radius as f32,
+            radius,
             ellipse,
             colour: (self.colour / self.area).as_vec3().to_array(),
             two_sided: self.two_sided,

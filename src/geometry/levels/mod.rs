@@ -71,8 +71,8 @@ impl LevelTable {
 
 impl Levels {
     /// Builds the levels of `surfels`. Aggregated surfels have the means of position, normal and colour, weighted by area, and an ellipse of
-    /// the covariance of the discs; those with normals on one side of a plane become one, so that both sides of a thin sheet stay. They have
-    /// no clip lines and no curvature, and texture coordinates and materials of one of the points.
+    /// the covariance of the discs; those with normals on one side of a plane become one, so that both sides of a thin sheet stay.
+    /// Billboards become one of their whole area, at most as large as their extent. Aggregated surfels have no clip lines and no curvature, and texture coordinates and materials of one of the points.
     ///
     /// # Errors
     /// [`Error::Usage`] for surfels with normalization weights, which do not aggregate.

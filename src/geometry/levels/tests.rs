@@ -114,6 +114,54 @@ fn both_sides_of_a_sheet_stay_and_streams_are_as_long_as_the_surfels() {
     assert_eq!(2 * front, aggregated.len());
 }
 
+/// Billboards above a plane: their levels are billboards of at most the area of all, and the plane's are surfels of its normal.
+#[test]
+fn billboards_become_billboards_of_their_area() {
+    let mut points = scenes::open("scene:plane?points=5000").unwrap();
+    let normal = points.normals[0];
+    let raised = Surfels {
+        positions: points.positions.iter().map(|p| *p + 0.1 * normal * p.x).collect(),
+        normals: vec![Vec3::ZERO; points.len()],
+        radii: points.radii.iter().map(|radius| 0.1 * radius).collect(),
+        ..Surfels::default()
+    };
+    points.positions.extend(&raised.positions);
+    points.normals.extend(&raised.normals);
+    points.radii.extend(&raised.radii);
+    points.colours = None;
+    let levels = Levels::of(points.clone()).unwrap();
+    assert_eq!(levels.surfels.count_invalid(), 0);
+    let area = |surfels: &Surfels, range: Range<usize>| {
+        let own = range.filter(|&i| surfels.is_billboard(i)).map(|i| f64::from(surfels.radii[i]).powi(2));
+        own.fold((0, 0.0), |(count, sum), area| (count + 1, sum + area))
+    };
+    let (_, whole) = area(&points, 0..points.len());
+    let starts = levels.table.starts();
+    for (number, start) in starts.iter().enumerate() {
+        let end = starts.get(number + 1).map_or(levels.surfels.len(), |end| *end as usize);
+        let (count, sum) = area(&levels.surfels, *start as usize..end);
+        assert!(
+            count > 0 && (sum / whole - 1.0).abs() < 1e-3,
+            "level {}: {count}, {}",
+            number + 1,
+            sum / whole
+        );
+        let others = (*start as usize..end).filter(|&i| !levels.surfels.is_billboard(i));
+        assert!(others.map(|i| levels.surfels.normals[i]).all(|n| n.dot(normal) > 0.999));
+    }
+}
+
+/// A heap of billboards that hide each other is no larger than its extent.
+#[test]
+fn billboards_in_a_heap_become_no_larger_than_the_heap() {
+    let mut heap = bumpy(5_000);
+    (heap.normals, heap.colours) = (vec![Vec3::ZERO; heap.len()], None);
+    heap.radii.fill(0.5);
+    let levels = Levels::of(heap).unwrap();
+    let largest = levels.surfels.radii.iter().copied().fold(0.0, f32::max);
+    assert!((1.0..3.0).contains(&largest), "{largest}");
+}
+
 #[test]
 fn few_points_have_no_levels_and_weights_are_refused() {
     let few = bumpy(100);

@@ -150,7 +150,7 @@ impl Baseline {
         self.target.fit(size, outputs)?;
         self.stages.times.clear();
         let (target, stages) = (&mut self.target, &mut self.stages);
-        let streams = Streams::new(&self.surfels, &self.linear, settings, outputs);
+        let streams = Streams::new(&self.surfels, &self.linear, &view, settings, outputs);
         match kind {
             Kind::Pixels => {
                 self.pixels.frame(&self.surfels, &streams, &view, settings, target, stages)?;

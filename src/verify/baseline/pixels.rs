@@ -144,7 +144,7 @@ impl<'a> Projection<'a> {
     #[inline]
     fn is_turned(&self, index: usize, position: Vec3) -> bool {
         let ray = if self.view.perspective { position } else { self.forward };
-        self.surfels.normals[index].dot(ray) >= 0.0
+        self.surfels.normals[index].dot(ray) >= 0.0 && !self.surfels.is_billboard(index)
     }
 
     #[inline]

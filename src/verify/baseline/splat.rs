@@ -58,6 +58,8 @@ struct SurfelGeometry {
     facing: f64,
     /// Homogeneous pixel of the centre.
     image: DVec2,
+    /// Unit normal.
+    normal: DVec3,
 }
 
 impl<'a> Footprint<'a> {
@@ -77,7 +79,7 @@ impl<'a> Footprint<'a> {
     #[inline]
     pub fn splat(&self, index: usize) -> Option<(Splat, Vec2)> {
         let geometry = self.geometry(index)?;
-        let (radius, normal) = (self.surfels.radii[index], self.surfels.normals[index]);
+        let (radius, normal) = (self.surfels.radii[index], geometry.normal.as_vec3());
         let sigma = radius * self.inverse_cutoff;
         let ([major, minor], aspect) = self.axes(index, normal);
         let [s, t] = [self.pixel * (sigma * major), self.pixel * (sigma * minor)];
@@ -95,7 +97,7 @@ impl<'a> Footprint<'a> {
         }
         let (anchor, pixel) = self.anchor(middle);
         let offset = ((geometry.image - geometry.w * pixel) * inverse).as_vec2() + shift;
-        let plane = self.plane(normal.as_dvec3(), &geometry, pixel);
+        let plane = self.plane(geometry.normal, &geometry, pixel);
         let reach = self.settings.epsilon * radius;
         let splat = Splat {
             anchor,
@@ -134,7 +136,10 @@ impl<'a> Footprint<'a> {
     fn geometry(&self, index: usize) -> Option<SurfelGeometry> {
         let view = self.view;
         let position = self.surfels.positions[index].as_dvec3() - view.eye;
-        let normal = self.surfels.normals[index].as_dvec3();
+        let normal = match self.surfels.is_billboard(index) {
+            true => view.to_eye(position),
+            false => self.surfels.normals[index].as_dvec3(),
+        };
         let image = view.pixel * position;
         let (distance, w) = (image.z, if view.perspective { image.z } else { 1.0 });
         let height = normal.dot(position);
@@ -145,13 +150,13 @@ impl<'a> Footprint<'a> {
         {
             return None;
         }
-        Some(SurfelGeometry { distance, w, height, facing, image: image.truncate() + view.middle })
+        Some(SurfelGeometry { distance, w, height, facing, image: image.truncate() + view.middle, normal })
     }
 
     /// Directions of the disc's semi-axes; the second is scaled by the aspect, which is returned, too.
     #[inline]
     fn axes(&self, index: usize, normal: Vec3) -> ([Vec3A; 2], f32) {
-        match &self.surfels.ellipses {
+        match self.surfels.ellipses.as_ref().filter(|_| !self.surfels.is_billboard(index)) {
             None => (tangents(normal), 1.0),
             Some(ellipses) => {
                 let ellipse = ellipses[index];

@@ -1,6 +1,7 @@
 //! Weighted sums of a frame, and the surfels' contributions to them.
 
 use super::splat::FLIPPED;
+use super::view::View;
 use crate::geometry::{Colours, Surfels};
 use crate::settings::Outputs;
 use crate::settings::{Settings, Shading};
@@ -24,11 +25,18 @@ pub(super) struct Streams<'a> {
     /// Whether depth keys are summed.
     pub depth_keys: bool,
     linear: &'a [f32; 256],
+    view: &'a View,
 }
 
 impl<'a> Streams<'a> {
     /// `linear` is the table of decoded sRGB codes.
-    pub fn new(surfels: &'a Surfels, linear: &'a [f32; 256], settings: &Settings, outputs: Outputs) -> Self {
+    pub fn new(
+        surfels: &'a Surfels,
+        linear: &'a [f32; 256],
+        view: &'a View,
+        settings: &Settings,
+        outputs: Outputs,
+    ) -> Self {
         let shading = settings.shading;
         Self {
             surfels,
@@ -36,6 +44,7 @@ impl<'a> Streams<'a> {
             colours: surfels.colours.is_some() && matches!(shading, Shading::Lit | Shading::Colour),
             depth_keys: outputs.depth || shading == Shading::Depth,
             linear,
+            view,
         }
     }
 
@@ -60,7 +69,10 @@ impl<'a> Streams<'a> {
             return [r, g, b, 0.0, 0.0, 0.0];
         }
         let towards = if surfel & FLIPPED == 0 { 1.0 } else { -1.0 };
-        let normal = towards * self.surfels.normals[index];
+        let normal = match self.surfels.is_billboard(index) {
+            true => self.view.to_eye(self.surfels.positions[index].as_dvec3() - self.view.eye).as_vec3(),
+            false => towards * self.surfels.normals[index],
+        };
         [normal.x, normal.y, normal.z, r, g, b]
     }
 

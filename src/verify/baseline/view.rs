@@ -35,6 +35,12 @@ pub(super) struct View {
 }
 
 impl View {
+    /// Unit direction to the eye from a position relative to it.
+    #[inline]
+    pub fn to_eye(&self, position: DVec3) -> DVec3 {
+        if self.perspective { -position.normalize_or_zero() } else { -self.forward }
+    }
+
     /// Prepares a camera; fails on invalid cameras and sizes.
     pub fn new(camera: &Camera, size: [u32; 2], origin: DVec3) -> Result<Self> {
         let depth = camera.projection()?;

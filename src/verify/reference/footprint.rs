@@ -16,7 +16,7 @@ use glam::{DMat2, DMat3, DVec2, DVec3};
 pub struct Surfel {
     /// Centre, origin included.
     pub position: DVec3,
-    /// Unit normal.
+    /// Unit normal; 0 of a billboard, which faces the eye ([`Surfels::is_billboard`]).
     pub normal: DVec3,
     /// Longer semi-axis of the covered disc, `F σ`.
     pub radius: f64,
@@ -192,6 +192,7 @@ impl Projector {
     /// The splat of one surfel, or its cull reason. The reasons are tested in the order of [`Culled`]; the surfel must
     /// be valid.
     pub fn footprint(&self, surfel: &Surfel) -> Result<Splat, Culled> {
+        let surfel = &self.facing_eye(surfel);
         let centre = self.view.transform_point3(surfel.position);
         let normal = self.view.transform_vector3(surfel.normal);
         let distance = self.distance(centre);
@@ -244,6 +245,21 @@ impl Projector {
         }
     }
 
+    /// The surfel itself; a billboard becomes a circle with the normal to the eye, of an unknown curvature. At the eye it has none.
+    pub(crate) fn facing_eye(&self, surfel: &Surfel) -> Surfel {
+        if surfel.normal != DVec3::ZERO {
+            return *surfel;
+        }
+        let centre = self.view.transform_point3(surfel.position);
+        let to_eye = match self.depth.perspective {
+            true => self.eye() - centre,
+            false => DVec3::new(0.0, 0.0, -self.depth.forward),
+        };
+        let normal = self.to_world(to_eye).normalize_or_zero();
+        let major = normal.any_orthonormal_vector();
+        Surfel { normal, major, aspect: 1.0, curvature: Curvature::default(), ..*surfel }
+    }
+
     /// Line on the screen beyond which the surface has turned away from the eye: where the tangent plane of a front-facing
     /// surfel is [`TURN_DEPTH`] below the centre. `centre` is in eye space, `plane` as in [`Splat`].
     fn turn_line(&self, surfel: &Surfel, centre: DVec3, plane: DVec3) -> Option<TurnLine> {
@@ -286,7 +302,7 @@ impl Projector {
     pub(super) fn moved_footprint(&self, surfel: &Surfel) -> Result<Splat, Culled> {
         let epsilon = f64::from(self.settings.epsilon) * surfel.radius;
         let away = self.to_world(DVec3::new(0.0, 0.0, self.depth.forward));
-        let moved = Surfel { position: surfel.position + epsilon * away, ..*surfel };
+        let moved = Surfel { position: surfel.position + epsilon * away, ..self.facing_eye(surfel) };
         let shift = if self.depth.perspective { 1.0 } else { 0.0 };
         self.footprint(&moved).map(|splat| Splat { shift, ..splat })
     }

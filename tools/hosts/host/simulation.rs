@@ -82,6 +82,7 @@ impl Simulation {
             colours: Some(values(28, vk::Format::R8G8B8A8_SRGB)),
             ellipses: None,
             two_sided: false,
+            billboards: false,
             capacity: count,
             count,
             origin: DVec3::ZERO,

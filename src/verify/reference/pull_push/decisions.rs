@@ -80,7 +80,7 @@ pub fn projection_gaps(frame: &Reconstruction, surfels: &Surfels, visible: &Visi
     let level = &visible.level;
     let mut gaps = vec![f64::INFINITY; level.samples.len()];
     for i in (0..surfels.len()).filter(|&i| surfels.is_valid(i)) {
-        let surfel = Surfel::of(surfels, i);
+        let surfel = projector.facing_eye(&Surfel::of(surfels, i));
         let at = projector.view.transform_point3(surfel.position);
         let distance = projector.distance(at);
         if distance < projector.planes()[0] {

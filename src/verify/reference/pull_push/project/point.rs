@@ -11,6 +11,7 @@ const LEAST_RADIUS: f64 = 1.0;
 impl Reconstruction {
     pub(super) fn point(&self, surfel: &Surfel) -> Result<Point, Culled> {
         let projector = &self.projector;
+        let surfel = &projector.facing_eye(surfel);
         let position = projector.view.transform_point3(surfel.position);
         let normal = projector.view.transform_vector3(surfel.normal);
         let [near, far] = projector.planes();
