@@ -184,6 +184,7 @@ fn sources(estimated: &Estimated) -> String {
         (estimated.normals_from_neighbours, "from neighbours"),
         (estimated.two_sided, "two-sided"),
         (estimated.scattered, "unlike their neighbours'"),
+        (estimated.billboards, "facing the eye"),
     ]);
     let radii = list(&[
         (estimated.radii_given, "given"),

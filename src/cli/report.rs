@@ -188,13 +188,19 @@ fn tally(loaded: &LoadedModel, counts: SplatCounts) -> Value {
 /// Where normals and radii come from, as numbers of points.
 pub fn estimated(counts: &Estimated) -> Value {
     let Estimated {
-        normals_given, normals_from_faces, normals_from_neighbours, two_sided, scattered, ..
+        normals_given,
+        normals_from_faces,
+        normals_from_neighbours,
+        two_sided,
+        scattered,
+        billboards,
+        ..
     } = counts;
     let Estimated { radii_given, radii_from_faces, radii_from_neighbours, .. } = counts;
     json!({
         "normals": {
             "given": normals_given, "from_faces": normals_from_faces, "from_neighbours": normals_from_neighbours,
-            "two_sided": two_sided, "scattered": scattered,
+            "two_sided": two_sided, "scattered": scattered, "billboards": billboards,
         },
         "radii": {
             "given": radii_given, "from_faces": radii_from_faces, "from_neighbours": radii_from_neighbours,

@@ -20,6 +20,7 @@ pub(super) fn clip(surfels: &mut Surfels, triangles: &[[u32; 3]], sites: &Sites)
         })
     };
     let old = |i: usize| surfels.clips.as_ref().and_then(|clips| clips.get(i)).copied();
+    let new = |i: usize| if surfels.is_billboard(i) { None } else { new(i) };
     let clips: Vec<_> = (0..surfels.len()).into_par_iter().map(|i| old(i).or_else(|| new(i))).collect();
     let count = (0..surfels.len()).filter(|&i| clips[i].is_some() && old(i).is_none()).count();
     surfels.clips = Clips::collect(clips);

@@ -76,6 +76,9 @@ struct Finder<'a> {
 impl Finder<'_> {
     /// The clip of a surfel whose disc reaches a crease.
     fn clip(&self, index: usize) -> Option<Clip> {
+        if self.surfels.is_billboard(index) {
+            return None;
+        }
         let normal = self.surfels.normals[index].as_dvec3();
         let samples = self.around(index);
         let turn = |samples: &Sample| normal.angle_between(samples.normal);
@@ -103,7 +106,8 @@ impl Finder<'_> {
             let unknown = is_two_sided(index) || is_two_sided(other);
             Sample { at, normal: if unknown { agreeing(normal, facing, at) } else { facing } }
         };
-        let near = sites.nearest(sites.of_point[index], self.count).map(sample);
+        let has_normal = |site: &u32| !surfels.is_billboard(sites.point[*site as usize] as usize);
+        let near = sites.nearest(sites.of_point[index], self.count).filter(has_normal).map(sample);
         near.take_while(|samples| samples.at.length() <= WINDOW).collect()
     }
 }

@@ -17,7 +17,8 @@ const FLATNESS: f64 = 1e-3;
 /// Number of surfels per task.
 const PIECE: usize = 1 << 12;
 
-/// The curvature at every surfel: the shape operator nearest to the curvatures towards its neighbours. Unknown at two-sided surfels.
+/// The curvature at every surfel: the shape operator nearest to the curvatures towards its neighbours. Unknown at two-sided surfels and
+/// billboards.
 pub(super) fn curvatures(
     surfels: &Surfels,
     sites: &Sites,
@@ -41,7 +42,7 @@ pub(super) fn curvatures(
 fn curvature_at(surfels: &Surfels, sites: &Sites, i: usize) -> Curvature {
     let normal = surfels.normals[i].as_dvec3();
     let is_two_sided = |i: usize| surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[i]);
-    if is_two_sided(i) {
+    if is_two_sided(i) || surfels.is_billboard(i) {
         return Curvature::default();
     }
     let site = sites.of_point[i];

@@ -92,7 +92,7 @@ impl Draft {
 
     /// Number of missing normals and radii.
     fn lacking(&self) -> [u64; 2] {
-        let normals = self.surfels.normals.iter().filter(|normal| **normal == Vec3::ZERO).count();
+        let normals = (0..self.surfels.len()).filter(|&i| lacks_normal(&self.surfels, i)).count();
         let radii = self.surfels.radii.iter().filter(|radius| **radius == 0.0).count();
         [normals as u64, radii as u64]
     }
@@ -124,20 +124,30 @@ impl Draft {
             *ellipse = within(*ellipse, *normal);
         }
         if let Some(clips) = surfels.clips.take() {
-            let within = |(i, normal): (usize, &Vec3)| clips.get(i)?.within(*normal);
+            let within =
+                |(i, normal): (usize, &Vec3)| clips.get(i).filter(|_| *normal != Vec3::ZERO)?.within(*normal);
             surfels.clips = Clips::collect(surfels.normals.iter().enumerate().map(within));
         }
-        estimated.two_sided =
-            surfels.two_sided.iter().flatten().filter(|two_sided| **two_sided).count() as u64;
+        let is_billboard = |&i: &usize| surfels.is_billboard(i);
+        estimated.billboards = (0..surfels.len()).filter(is_billboard).count() as u64;
+        let two_sided = surfels.two_sided.iter().flatten().zip(&surfels.normals);
+        let two_sided = two_sided.filter(|(two_sided, normal)| **two_sided && **normal != Vec3::ZERO);
+        estimated.two_sided = two_sided.count() as u64;
         Ok((surfels, estimated))
     }
 }
 
-/// The ellipse projected to the plane of a disc with a unit normal; a circle if its axis is orthogonal to the plane.
+/// Whether a surfel has no normal and is no declared billboard: those have a radius and are two-sided.
+pub(super) fn lacks_normal(surfels: &Surfels, i: usize) -> bool {
+    let two_sided = || surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[i]);
+    surfels.normals[i] == Vec3::ZERO && !(surfels.radii[i] > 0.0 && two_sided())
+}
+
+/// The ellipse projected to the plane of a disc with a unit normal; a circle if its axis is orthogonal to the plane, or without a normal.
 fn within(ellipse: Ellipse, normal: Vec3) -> Ellipse {
     let major = ellipse.major - ellipse.major.dot(normal) * normal;
     // Shorter vectors are rounding errors.
-    if major.length() > 1e-3 {
+    if normal != Vec3::ZERO && major.length() > 1e-3 {
         Ellipse { major: major.normalize(), ..ellipse }
     } else {
         Ellipse::circle(normal)

@@ -19,6 +19,7 @@ mod orient;
 mod outliers;
 mod patch;
 mod reach;
+mod scatter;
 mod sheet;
 mod sites;
 mod spacing;
@@ -75,6 +76,9 @@ pub struct Estimate {
     pub elliptical: bool,
     /// Whether outlines are estimated, too: [`Surfels::curvatures`], and clips at the boundaries of open meshes.
     pub outlines: bool,
+    /// Whether points on no surface, as in vegetation, become billboards ([`Surfels::is_billboard`]) instead of discs with a normal that means
+    /// nothing. Their discs are small, so that leaves stay separate.
+    pub billboards: bool,
     /// Where the surfels of meshes are.
     pub mesh_sampling: MeshSampling,
     /// Removes points whose mean distance from their neighbours is more than this number of standard deviations above the average.
@@ -93,6 +97,7 @@ impl Default for Estimate {
             radius_scale: 1.0,
             elliptical: false,
             outlines: true,
+            billboards: true,
             mesh_sampling: MeshSampling::Auto,
             outliers: None,
             sharp: None,
@@ -141,10 +146,12 @@ pub struct Estimated {
     pub normals_from_faces: u64,
     /// Normals from the nearest points.
     pub normals_from_neighbours: u64,
-    /// Points among them whose normals have little in common with those of their neighbours, as in vegetation and in the noise of depth
-    /// cameras: they mean nothing.
+    /// Points whose estimated normals have little in common with those of their neighbours, as in vegetation and in the noise of depth
+    /// cameras: they mean nothing. Most billboards are among them.
     pub scattered: u64,
-    /// Two-sided surfels: the side of the normal is unknown, or the file declares it.
+    /// Billboards: points on no surface, or declared by the file.
+    pub billboards: u64,
+    /// Other two-sided surfels: the side of the normal is unknown, or the file declares it.
     pub two_sided: u64,
     /// Radii from the file, or from [`Estimate::radius`].
     pub radii_given: u64,
@@ -181,6 +188,7 @@ impl Add for Estimated {
             normals_from_faces: self.normals_from_faces + other.normals_from_faces,
             normals_from_neighbours: self.normals_from_neighbours + other.normals_from_neighbours,
             scattered: self.scattered + other.scattered,
+            billboards: self.billboards + other.billboards,
             two_sided: self.two_sided + other.two_sided,
             radii_given: self.radii_given + other.radii_given,
             radii_from_faces: self.radii_from_faces + other.radii_from_faces,
@@ -203,7 +211,8 @@ impl Cloud {
     ///
     /// A missing normal is that of the faces around the point, outwards on a closed surface; without faces, that of the least-squares plane through its neighbours. Such
     /// a normal points to where the cloud was seen from, or agrees with known normals and with its neighbours', outwards on a closed
-    /// surface. If its side is still unknown, the surfel is two-sided.
+    /// surface. If its side is still unknown, the surfel is two-sided. A point whose neighbours are no surface, as in vegetation, becomes
+    /// a billboard ([`Estimate::billboards`]); so is a two-sided one with a radius and without a normal, as `convert` writes it.
     ///
     /// A missing radius is just large enough that the discs of a smooth surface leave no gap, according to the triangles between the
     /// points: faces, or the Delaunay triangulation of the neighbours in the tangent plane. Normalization weights are kept unless radii,
@@ -266,6 +275,7 @@ mod tests {
             normals_from_faces: 2,
             normals_from_neighbours: 3,
             scattered: 17,
+            billboards: 18,
             two_sided: 4,
             radii_given: 5,
             radii_from_faces: 6,
@@ -285,6 +295,7 @@ mod tests {
             normals_from_faces: 4,
             normals_from_neighbours: 6,
             scattered: 34,
+            billboards: 36,
             two_sided: 8,
             radii_given: 10,
             radii_from_faces: 12,

@@ -1,8 +1,9 @@
 //! Normals and radii from the nearest points.
 
-use super::draft::Draft;
+use super::draft::{Draft, lacks_normal};
 use super::orient::{Edge, Oriented};
 use super::patch::{Patch, Surveyor};
+use super::scatter::{self, Scatter};
 use super::sites::Sites;
 use super::{Estimate, MARGIN};
 use crate::Progress;
@@ -24,9 +25,6 @@ const LARGEST_OVERALL: f32 = 2.0;
 const LARGEST_SPARSE: [f32; 2] = [1.5, 4.0];
 /// Radius, as a part of the cloud's diagonal, that discs on a surface may have in any case: the far walls of a room stay closed.
 const LARGEST_PART: f32 = 0.002;
-/// Mean absolute cosine between a point's normal and those of its neighbours below which the normals have little in common: that of 37°; of
-/// random directions it is ½.
-const LEAST_ALIKE: f32 = 0.8;
 /// Number of sites per task.
 const PIECE: usize = 1 << 12;
 
@@ -42,9 +40,13 @@ pub(super) fn fill(
     let survey = Survey::new(sites, wanted(surfels, sites), how, progress)?;
     let (normals, unknown) = normals(surfels, sites, &survey, view, progress);
     progress.check_cancelled()?;
-    let (radii, scattered) = (radii(surfels, sites, &survey), survey.scattered(&normals));
+    let Scatter { scattered, mut volume } = Scatter::new(&survey, &normals);
+    if !how.billboards {
+        volume.fill(false);
+    }
+    let radii = radii(surfels, sites, &survey, &volume);
     let is_estimated: Vec<bool> = surfels.radii.iter().map(|radius| *radius == 0.0).collect();
-    put(draft, sites, &OfSites { normals, unknown, radii, scattered });
+    put(draft, sites, &OfSites { normals, unknown, radii, scattered, volume });
     if how.elliptical {
         stretch(&mut draft.surfels, sites, &survey, &is_estimated);
     }
@@ -53,7 +55,7 @@ pub(super) fn fill(
 
 /// Sites with a missing normal or radius.
 fn wanted(surfels: &Surfels, sites: &Sites) -> Vec<u32> {
-    let lacks = |i: usize| surfels.normals[i] == Vec3::ZERO || surfels.radii[i] == 0.0;
+    let lacks = |i: usize| lacks_normal(surfels, i) || surfels.radii[i] == 0.0;
     let mut wanted = vec![false; sites.len()];
     (0..surfels.len()).filter(|&i| lacks(i)).for_each(|i| wanted[sites.of_point[i] as usize] = true);
     (0..sites.len() as u32).filter(|&site| wanted[site as usize]).collect()
@@ -67,18 +69,21 @@ struct OfSites {
     radii: Vec<f32>,
     /// Whether its normal and those of its neighbours have little in common.
     scattered: Vec<bool>,
+    /// Whether it is on no surface.
+    volume: Vec<bool>,
 }
 
-/// Sets missing normals and radii.
+/// Sets missing radii, and missing normals except those of billboards.
 fn put(draft: &mut Draft, sites: &Sites, of_sites: &OfSites) {
     let (surfels, estimated) = (&mut draft.surfels, &mut draft.estimated);
     let mut two_sided = surfels.two_sided.take().unwrap_or_else(|| vec![false; surfels.len()]);
     for (i, &site) in sites.of_point.iter().enumerate() {
         let site = site as usize;
-        if surfels.normals[i] == Vec3::ZERO {
-            surfels.normals[i] = of_sites.normals[site];
-            two_sided[i] = of_sites.unknown[site];
-            estimated.normals_from_neighbours += 1;
+        if lacks_normal(surfels, i) {
+            let billboard = of_sites.volume[site];
+            surfels.normals[i] = if billboard { Vec3::ZERO } else { of_sites.normals[site] };
+            two_sided[i] = billboard || of_sites.unknown[site];
+            estimated.normals_from_neighbours += u64::from(!billboard);
             estimated.scattered += u64::from(of_sites.scattered[site]);
         }
         if surfels.radii[i] == 0.0 {
@@ -103,7 +108,7 @@ fn stretch(surfels: &mut Surfels, sites: &Sites, survey: &Survey, is_estimated: 
 }
 
 /// Patches of the sites with a missing normal or radius.
-struct Survey {
+pub(super) struct Survey {
     sites: Vec<u32>,
     patches: Vec<Patch>,
     /// [`EDGES`] neighbours of each site, padded with the site itself.
@@ -152,19 +157,8 @@ impl Survey {
         edges
     }
 
-    /// Whether each site's normal and those of its neighbours have little in common.
-    fn scattered(&self, normals: &[Vec3]) -> Vec<bool> {
-        let mut scattered = vec![false; normals.len()];
-        for (site, _, near) in self.each() {
-            let normal = normals[site as usize];
-            let cosines = near.iter().map(|&other| normals[other as usize].dot(normal).abs());
-            scattered[site as usize] = cosines.sum::<f32>() < LEAST_ALIKE * near.len() as f32;
-        }
-        scattered
-    }
-
     /// Each site with its patch and neighbours.
-    fn each(&self) -> impl Iterator<Item = (u32, &Patch, &[u32])> {
+    pub fn each(&self) -> impl Iterator<Item = (u32, &Patch, &[u32])> {
         self.sites
             .iter()
             .zip(&self.patches)
@@ -210,7 +204,7 @@ fn normals(
 }
 
 /// The radius of every site, in the points' unit.
-fn radii(surfels: &Surfels, sites: &Sites, survey: &Survey) -> Vec<f32> {
+fn radii(surfels: &Surfels, sites: &Sites, survey: &Survey, volume: &[bool]) -> Vec<f32> {
     let mut reaches = vec![0.0; sites.len()];
     survey.each().for_each(|(site, patch, _)| reaches[site as usize] = sites.unit * patch.reach);
     for (radius, &site) in surfels.radii.iter().zip(&sites.of_point) {
@@ -221,6 +215,11 @@ fn radii(surfels: &Surfels, sites: &Sites, survey: &Survey) -> Vec<f32> {
     let most = LARGEST_OVERALL * tail(reaches.clone());
     let middle = median(reaches.clone());
     let sparse = (LARGEST_SPARSE[1] * middle).max(LARGEST_PART * usual_extent(&surfels.positions).length());
+    // Discs that remain between those of points on no surface are not much larger.
+    for (site, patch, _) in survey.each().filter(|(site, ..)| volume[*site as usize]) {
+        let reach = &mut reaches[site as usize];
+        *reach = reach.min(scatter::RADIUS / MARGIN as f32 * sites.unit * patch.spacing);
+    }
     let mut radii = vec![0.0; sites.len()];
     for (site, patch, near) in survey.each() {
         let mut around = [0.0; EDGES];
@@ -287,27 +286,5 @@ mod tests {
             radii((0..900).map(|i| step * Vec3::new((i % 30) as f32, (i / 30) as f32, 0.0)).collect());
         let inner = found.iter().filter(|(x, _)| (1.0..8.0).contains(x)).map(|(_, radius)| *radius);
         assert!(inner.fold(f32::MAX, f32::min) >= 0.7 * step);
-    }
-
-    #[test]
-    fn normals_are_unlike_their_neighbours_in_a_volume_and_alike_on_a_surface() {
-        let scattered = |positions: Vec<Vec3>| {
-            let cloud = Cloud { positions, ..Default::default() };
-            let (surfels, counts) = cloud.into_surfels(&Estimate::default(), &()).unwrap();
-            counts.scattered as f64 / surfels.len() as f64
-        };
-        // Points of a low-discrepancy sequence in a cube, on its bottom, and on a cylinder of six spacings' radius.
-        let part = |i: usize, step: f64| (step * i as f64).fract() as f32;
-        let in_cube = |i| Vec3::new(part(i, 0.819_172_5), part(i, 0.671_043_6), part(i, 0.549_700_5));
-        let on_cylinder = |i| {
-            let (sin, cos) = (std::f32::consts::TAU * part(i, 0.754_877_7)).sin_cos();
-            Vec3::new(cos, sin, 8.0 * part(i, 0.569_840_3))
-        };
-        let [cube, bottom, cylinder] = [
-            scattered((0..2000).map(in_cube).collect()),
-            scattered((0..2000).map(|i| in_cube(i).with_z(0.0)).collect()),
-            scattered((0..2000).map(on_cylinder).collect()),
-        ];
-        assert!(cube > 0.4 && bottom == 0.0 && cylinder == 0.0, "{cube} {bottom} {cylinder}");
     }
 }

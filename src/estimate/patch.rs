@@ -17,6 +17,10 @@ pub(super) struct Patch {
     pub flatness: f32,
     /// Whether the neighbours lie in a plane and surround the site, so that they are a surface there.
     pub is_surface: bool,
+    /// Median distance of the neighbours from the plane, relative to that from the site; 0 where they are thin.
+    pub roughness: f32,
+    /// Distance of the third neighbour.
+    pub spacing: f32,
     /// The ellipse that covers the region.
     pub ellipse: Option<Ellipse>,
 }
@@ -99,14 +103,18 @@ impl<'a> Surveyor<'a> {
                 self.look(site, self.neighbours)
             };
         }
+        let mut roughness = 0.0;
         if plane.thickness() > NOISY && !self.offsets.is_empty() {
             plane = self.settle(plane);
+            roughness = self.distance_from(&plane) / self.median(DVec3::length);
         }
         let mut patch = Patch {
             normal: plane.normal.as_vec3(),
             reach: self.cell.reach(&self.flat) as f32,
             flatness: plane.flatness() as f32,
             is_surface: !self.cell.is_open(&self.flat) && !plane.is_line() && plane.thickness() < THICK,
+            roughness: roughness as f32,
+            spacing: self.distance(2) as f32,
             ellipse: None,
         };
         if self.elliptical {
@@ -119,28 +127,41 @@ impl<'a> Surveyor<'a> {
     /// Limits the radius at gaps that are wide relative to the distance of the nearest neighbours, the more so if these do not lie in a
     /// plane.
     fn limit(&self, patch: &mut Patch) {
-        let distance =
-            |i: usize| self.offsets.get(i).or(self.offsets.last()).map_or(0.0, |offset| offset.length());
-        let most = distance(AROUND - 1) * (WIDEST[0] + f64::from(patch.flatness) * (WIDEST[1] - WIDEST[0]));
+        let most =
+            self.distance(AROUND - 1) * (WIDEST[0] + f64::from(patch.flatness) * (WIDEST[1] - WIDEST[0]));
         patch.reach = match patch.reach {
             // In a line, or with a single neighbour: half-way to the second.
-            0.0 => 0.5 * distance(1) as f32,
+            0.0 => 0.5 * self.distance(1) as f32,
             reach => reach.min(most as f32),
         };
+    }
+
+    /// Distance of neighbour `i`, or of the last one; 0 without any.
+    fn distance(&self, i: usize) -> f64 {
+        self.offsets.get(i).or(self.offsets.last()).map_or(0.0, |offset| offset.length())
+    }
+
+    /// Median distance of the neighbours from a plane.
+    fn distance_from(&mut self, plane: &Plane) -> f64 {
+        self.median(|offset| plane.distance(offset))
+    }
+
+    /// Median of a measure of the neighbours, of which there are some.
+    fn median(&mut self, measure: impl Fn(DVec3) -> f64) -> f64 {
+        self.distances.clear();
+        self.distances.extend(self.offsets.iter().map(|offset| measure(*offset)));
+        let middle = self.distances.len() / 2;
+        *self.distances.select_nth_unstable_by(middle, f64::total_cmp).1
     }
 
     /// The plane of most neighbours if they lie in several: iteratively reweighted by distance from the plane.
     fn settle(&mut self, mut plane: Plane) -> Plane {
         for _ in 0..SETTLING {
-            let distance = |offset: &DVec3| (offset - plane.mean).dot(plane.normal).abs();
-            self.distances.clear();
-            self.distances.extend(self.offsets.iter().map(distance));
-            let middle = self.distances.len() / 2;
-            let typical = *self.distances.select_nth_unstable_by(middle, f64::total_cmp).1;
+            let typical = self.distance_from(&plane);
             if typical == 0.0 {
                 break;
             }
-            let weight = |offset: &DVec3| 1.0 / (1.0 + (distance(offset) / typical).powi(2));
+            let weight = |offset: &DVec3| 1.0 / (1.0 + (plane.distance(*offset) / typical).powi(2));
             plane = Plane::through(self.offsets.iter().map(|offset| (*offset, weight(offset))));
         }
         self.flatten(&plane);
@@ -202,6 +223,11 @@ impl Plane {
         let covariance = points.fold(DMat3::ZERO, |sum, (p, w)| sum + outer(p - mean) * w);
         let (values, [normal, a, b]) = eigen::symmetric(covariance);
         Self { mean, normal, tangents: [a, b], extents: values.max(DVec3::ZERO).map(f64::sqrt) }
+    }
+
+    /// Distance of an offset from the site.
+    fn distance(&self, offset: DVec3) -> f64 {
+        (offset - self.mean).dot(self.normal).abs()
     }
 
     /// Whether the neighbours lie in a line.

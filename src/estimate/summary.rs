@@ -10,6 +10,7 @@ impl Estimated {
         let radii = sources(counts.radii_from_faces, counts.radii_from_neighbours);
         let two_sided = Some(counts.two_sided).filter(|&count| count > 0 && normals.is_some());
         let scattered = Some(counts.scattered).filter(|&count| count > 0);
+        let billboards = Some(counts.billboards).filter(|&count| count > 0);
         let turned = Some(counts.triangles_turned).filter(|&count| count > 0);
         let replaced = Some(counts.vertices_replaced).filter(|&count| count > 0);
         let outliers = Some(counts.outliers).filter(|&count| count > 0);
@@ -23,6 +24,7 @@ impl Estimated {
             radii.map(|text| format!("radii of {text}")),
             two_sided.map(|count| format!("{count} two-sided")),
             scattered.map(|count| format!("{count} normals unlike their neighbours'")),
+            billboards.map(|count| format!("{count} on no surface, as discs that face the eye")),
             turned.map(|count| {
                 format!("{count} triangles turned round, as their surface is wound inwards or inconsistently")
             }),
@@ -66,9 +68,11 @@ mod tests {
             normals_from_neighbours: 1113,
             radii_from_neighbours: 35_947,
             two_sided: 210,
+            billboards: 12,
             ..Default::default()
         };
-        let line = "normals of 34834 points from faces, 1113 from neighbours; radii of 35947 points from neighbours; 210 two-sided";
+        let line = "normals of 34834 points from faces, 1113 from neighbours; radii of 35947 points from neighbours; 210 two-sided; \
+                    12 on no surface, as discs that face the eye";
         assert_eq!(mixed.summary().as_deref(), Some(line));
         let lines = Estimated { line_radii_from_lines: 2, line_radii_from_extent: 4, ..given };
         let line = "radii of 2 vertices of lines from others of their line; radii of 4 vertices of lines from the lines' extent, \

@@ -73,7 +73,7 @@ pub fn present(surfels: &Surfels) -> impl Iterator<Item = usize> {
     let has = [
         (0..FIRST_AXIS, true),
         (FIRST_AXIS..FLAG, surfels.ellipses.is_some()),
-        (FLAG..FIRST_CLIP, surfels.two_sided.is_some()),
+        (FLAG..FIRST_CLIP, surfels.two_sided.is_some() || surfels.normals.contains(&Vec3::ZERO)),
         (FIRST_CLIP..WEIGHT, surfels.clips.is_some()),
         (WEIGHT..WEIGHT + 1, weights.is_some()),
         (WEIGHT + 1..COUNT, weights.is_some_and(|weights| !weights.corners.is_empty())),
@@ -84,7 +84,9 @@ pub fn present(surfels: &Surfels) -> impl Iterator<Item = usize> {
 /// All properties of disc `i`; 0 for those that it does not have.
 pub fn numbers(surfels: &Surfels, i: usize) -> [f32; COUNT] {
     let (normal, radius) = (surfels.normals[i], surfels.radii[i]);
-    let [u, v] = surfels.ellipses.as_ref().map_or([Vec3::ZERO; 2], |all| all[i].semi_axes(normal, radius));
+    // Circles that face the eye have no axes.
+    let ellipses = surfels.ellipses.as_ref().filter(|_| normal != Vec3::ZERO);
+    let [u, v] = ellipses.map_or([Vec3::ZERO; 2], |all| all[i].semi_axes(normal, radius));
     let clip = surfels.clips.as_ref().and_then(|clips| clips.get(i)).copied().unwrap_or_default();
     let line = |ClipLine { outward, offset }: ClipLine| [outward.x, outward.y, outward.z, offset];
     let flag = |is: bool| f32::from(u8::from(is));
@@ -94,7 +96,8 @@ pub fn numbers(surfels: &Surfels, i: usize) -> [f32; COUNT] {
     all[RADIUS] = radius;
     all[FIRST_AXIS..FIRST_AXIS + 3].copy_from_slice(&u.to_array());
     all[FIRST_AXIS + 3..FLAG].copy_from_slice(&v.to_array());
-    all[FLAG] = flag(surfels.two_sided.as_ref().is_some_and(|flags| flags[i]));
+    // A billboard is a two-sided disc without a normal.
+    all[FLAG] = flag(surfels.is_billboard(i) || surfels.two_sided.as_ref().is_some_and(|flags| flags[i]));
     all[FIRST_CLIP..FIRST_CLIP + 4].copy_from_slice(&line(clip.lines[0]));
     all[FIRST_CLIP + 4..CONCAVE].copy_from_slice(&line(clip.lines[1]));
     all[CONCAVE] = flag(clip.concave);

@@ -259,3 +259,35 @@ fn wrong_options_exit_with_2_before_anything_is_read() {
     assert!(program.run("convert a.ply").error(2).contains("--output"));
     assert!(program.files().is_empty());
 }
+
+/// Pseudo-random points in a cube, no surface, beside a square.
+#[test]
+fn points_on_no_surface_face_the_eye_in_written_files_too() {
+    let program = Program::new();
+    let mut state = 1u64;
+    let mut number = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 40) as f64 / f64::from(1 << 24)
+    };
+    let points = (0..2000).map(|_| format!("{} {} {}\n", number(), number(), number()));
+    let square = (0..400).map(|i| format!("{} {} 5\n", 0.05 * f64::from(i % 20), 0.05 * f64::from(i / 20)));
+    program.write("a.xyz", points.chain(square).collect::<String>());
+    let count = |name: &str| {
+        let text = info(&program, name);
+        let line = text.lines().find(|line| line.starts_with("normals: ")).unwrap_or_default().to_owned();
+        let facing = line.split(", ").find_map(|part| part.strip_suffix(" facing the eye"));
+        (facing.map_or(0, |count| count.parse().unwrap()), line)
+    };
+    let (whole, _) = count("a.xyz");
+    assert!((1501..=2000).contains(&whole), "{whole}");
+    for file in ["b.ply", "b.las", "b.e57"] {
+        assert!(
+            program.run(&format!("convert a.xyz -o {file} --elliptical")).err.contains("that face the eye")
+        );
+        let (facing, line) = count(file);
+        // E57 has no such flag: the points are found again.
+        let is_kept = file == "b.e57" || line.starts_with("normals: 2400 given");
+        assert!(facing == whole && is_kept, "{file}: {line}");
+    }
+    assert_eq!(count("a.xyz --no-billboards").0, 0);
+}

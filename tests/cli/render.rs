@@ -278,5 +278,11 @@ fn coloured_points_on_no_surface_are_shaded_by_eye_dome_lighting() {
     assert!(edl.0 != lit.0 && !edl.1 && !lit.1);
     assert!(render("cloud.xyz") == (edl.0, true));
     assert!(render("flat.xyz") == render("flat.xyz --shading lit"));
-    assert!(render("plain.xyz --color-by file") == render("plain.xyz --color-by file --shading lit"));
+    // Normals that mean nothing are lit unless most points face the eye, which has no shape.
+    let plain = "plain.xyz --color-by file --no-billboards";
+    assert!(render(plain) == render(&format!("{plain} --shading lit")));
+    let (edl, lit) = ["edl", "lit"]
+        .map(|shading| render(&format!("plain.xyz --color-by file --shading {shading}")))
+        .into();
+    assert!(render("plain.xyz --color-by file") == (edl.0.clone(), true) && edl.0 != lit.0);
 }

@@ -250,7 +250,7 @@ fn check_surfels(surfels: &Surfels) {
     let unit = |n: &glam::Vec3| (n.length() - 1.0).abs() < 1e-4;
     for ((position, normal), radius) in surfels.positions.iter().zip(&surfels.normals).zip(&surfels.radii) {
         assert!(position.is_finite(), "a position: {position}");
-        assert!(unit(normal), "a normal: {normal}");
+        assert!(unit(normal) || *normal == glam::Vec3::ZERO, "a normal: {normal}");
         assert!(*radius > 0.0 && radius.is_finite(), "a radius: {radius}");
     }
     for (ellipse, normal) in surfels.ellipses.iter().flatten().zip(&surfels.normals) {

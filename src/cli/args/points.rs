@@ -38,6 +38,9 @@ pub struct Points {
     /// Estimates elliptical discs, longer along directions in which points are sparser
     #[arg(long)]
     pub elliptical: bool,
+    /// Gives points on no surface, as in vegetation, an estimated normal, too; otherwise their discs face the eye
+    #[arg(long)]
+    pub no_billboards: bool,
     /// Where the surfels of a mesh are
     #[arg(
         long,
@@ -71,6 +74,7 @@ impl Points {
             radius_scale: self.radius_scale,
             elliptical: self.elliptical,
             outlines: true,
+            billboards: !self.no_billboards,
             mesh_sampling: self.mesh_sampling,
             outliers: self.drop_outliers,
             sharp: None,
