@@ -1,6 +1,7 @@
 //! The library: pictures against the float64 reference and exact truth, files, estimates, measurements. One program, whose tests run side by
 //! side.
 
+mod after_light;
 mod agreement;
 mod baseline;
 mod bench;
