@@ -1,5 +1,15 @@
 // Made from shaders-glsl; see tools/shader_build.
 
+/// The compute stage of `shaders-glsl/ambient.glsl`.
+pub static AMBIENT_COMPUTE: Module = Module {
+    name: "ambient_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("ambient_compute.spv"),
+    constants: &[0, 66, 77],
+    resources: &[(&resource::FRAME, false), (&resource::IMAGE_OUTPUT, true), (&resource::DEPTH_OUTPUT, false), (&resource::OCCLUSION, false)],
+    push: 0,
+};
+
 /// The compute stage of `shaders-glsl/atomics.glsl`.
 pub static ATOMICS_COMPUTE: Module = Module {
     name: "atomics_compute",
@@ -570,6 +580,16 @@ pub static NORMALIZE_SUBPASS_COVERAGE_FRAGMENT: Module = Module {
     push: size_of::<layout::Subpass>() as u32,
 };
 
+/// The compute stage of `shaders-glsl/occlusion.glsl`.
+pub static OCCLUSION_COMPUTE: Module = Module {
+    name: "occlusion_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("occlusion_compute.spv"),
+    constants: &[0],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::DEPTH_OUTPUT, false), (&resource::OCCLUSION, true)],
+    push: 0,
+};
+
 /// The compute stage of `shaders-glsl/open.glsl`.
 pub static OPEN_COMPUTE: Module = Module {
     name: "open_compute",
@@ -948,6 +968,8 @@ pub mod constant {
     pub const CULL_BACK: u32 = 1;
     /// `CURVATURES`, first in `shaders-glsl/attribute.glsl`.
     pub const CURVATURES: u32 = 70;
+    /// `EDL`, first in `shaders-glsl/ambient.glsl`.
+    pub const EDL: u32 = 77;
     /// `ELLIPSES`, first in `shaders-glsl/attribute.glsl`.
     pub const ELLIPSES: u32 = 12;
     /// `ELLIPSE_OFFSET`, first in `shaders-glsl/attribute.glsl`.
@@ -956,7 +978,7 @@ pub mod constant {
     pub const ELLIPSE_STRIDE: u32 = 60;
     /// `ENCODE`, first in `shaders-glsl/composite.glsl`.
     pub const ENCODE: u32 = 41;
-    /// `FILTER_RADIUS`, first in `shaders-glsl/behind.glsl`.
+    /// `FILTER_RADIUS`, first in `shaders-glsl/ambient.glsl`.
     pub const FILTER_RADIUS: u32 = 66;
     /// `FOOTPRINT`, first in `shaders-glsl/attribute.glsl`.
     pub const FOOTPRINT: u32 = 15;
@@ -978,7 +1000,7 @@ pub mod constant {
     pub const INSTANCED: u32 = 37;
     /// `LARGE_TRIANGLES`, first in `shaders-glsl/project.glsl`.
     pub const LARGE_TRIANGLES: u32 = 30;
-    /// `LATE_BACKGROUND`, first in `shaders-glsl/behind.glsl`.
+    /// `LATE_BACKGROUND`, first in `shaders-glsl/ambient.glsl`.
     pub const LATE_BACKGROUND: u32 = 76;
     /// `LIGHTS`, first in `shaders-glsl/attribute.glsl`.
     pub const LIGHTS: u32 = 7;
@@ -1006,7 +1028,7 @@ pub mod constant {
     pub const OVERLAP: u32 = 19;
     /// `PAPER`, first in `shaders-glsl/fetch.glsl`.
     pub const PAPER: u32 = 28;
-    /// `PERSPECTIVE`, first in `shaders-glsl/attribute.glsl`.
+    /// `PERSPECTIVE`, first in `shaders-glsl/ambient.glsl`.
     pub const PERSPECTIVE: u32 = 0;
     /// `PING_PONG`, first in `shaders-glsl/push.glsl`.
     pub const PING_PONG: u32 = 32;
@@ -1022,7 +1044,7 @@ pub mod constant {
     pub const RECONSTRUCT: u32 = 48;
     /// `SHADE`, first in `shaders-glsl/attribute.glsl`.
     pub const SHADE: u32 = 20;
-    /// `SHADING`, first in `shaders-glsl/behind.glsl`.
+    /// `SHADING`, first in `shaders-glsl/ambient.glsl`.
     pub const SHADING: u32 = 6;
     /// `SLICED`, first in `shaders-glsl/attribute.glsl`.
     pub const SLICED: u32 = 47;
@@ -1154,7 +1176,7 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
     };
 
-    /// `Frame`, first in `shaders-glsl/attribute.glsl`.
+    /// `Frame`, first in `shaders-glsl/ambient.glsl`.
     pub static FRAME: Resource = Resource {
         name: "Frame",
         set: 0,
@@ -1496,7 +1518,7 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
     };
 
-    /// `depth_output`, first in `shaders-glsl/edl.glsl`.
+    /// `depth_output`, first in `shaders-glsl/ambient.glsl`.
     pub static DEPTH_OUTPUT: Resource = Resource {
         name: "depth_output",
         set: 1,
@@ -1631,7 +1653,7 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `image_output`, first in `shaders-glsl/behind.glsl`.
+    /// `image_output`, first in `shaders-glsl/ambient.glsl`.
     pub static IMAGE_OUTPUT: Resource = Resource {
         name: "image_output",
         set: 1,
@@ -1672,6 +1694,15 @@ pub mod resource {
         name: "normal_output",
         set: 1,
         binding: 19,
+        kind: DescriptorType::STORAGE_IMAGE,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `occlusion`, first in `shaders-glsl/ambient.glsl`.
+    pub static OCCLUSION: Resource = Resource {
+        name: "occlusion",
+        set: 1,
+        binding: 27,
         kind: DescriptorType::STORAGE_IMAGE,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
@@ -1933,7 +1964,7 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(FillOptions, scale) == 0);
     const _: () = assert!(std::mem::size_of::<FillOptions>() == 16);
 
-    /// `Frame`, 192 bytes, first in `shaders-glsl/attribute.glsl`.
+    /// `Frame`, 208 bytes, first in `shaders-glsl/ambient.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Frame {
@@ -1980,9 +2011,15 @@ pub mod layout {
         /// Byte 176.
         pub edl: f32,
         /// Byte 180.
-        pub pixel_width: f32,
+        pub ao: f32,
         /// Byte 184.
+        pub pixel_width: f32,
+        /// Unused: the layout leaves a gap here.
+        pub _pad22: [u8; 4],
+        /// Byte 192.
         pub origin: [f32; 2],
+        /// Unused: the layout leaves a gap here.
+        pub _pad23: [u8; 8],
     }
     const _: () = assert!(std::mem::offset_of!(Frame, viewport) == 0);
     const _: () = assert!(std::mem::offset_of!(Frame, near) == 8);
@@ -2004,9 +2041,10 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Frame, shininess) == 168);
     const _: () = assert!(std::mem::offset_of!(Frame, pixel_filter) == 172);
     const _: () = assert!(std::mem::offset_of!(Frame, edl) == 176);
-    const _: () = assert!(std::mem::offset_of!(Frame, pixel_width) == 180);
-    const _: () = assert!(std::mem::offset_of!(Frame, origin) == 184);
-    const _: () = assert!(std::mem::size_of::<Frame>() == 192);
+    const _: () = assert!(std::mem::offset_of!(Frame, ao) == 180);
+    const _: () = assert!(std::mem::offset_of!(Frame, pixel_width) == 184);
+    const _: () = assert!(std::mem::offset_of!(Frame, origin) == 192);
+    const _: () = assert!(std::mem::size_of::<Frame>() == 208);
 
     /// `Group`, 16 bytes, first in `shaders-glsl/cull.glsl`.
     #[repr(C)]
@@ -2315,7 +2353,7 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(ValueRange, greatest) == 4);
     const _: () = assert!(std::mem::size_of::<ValueRange>() == 8);
 
-    /// `View`, 480 bytes, first in `shaders-glsl/attribute.glsl`.
+    /// `View`, 480 bytes, first in `shaders-glsl/ambient.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct View {
@@ -2381,7 +2419,7 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(View, level_starts) == 432);
     const _: () = assert!(std::mem::size_of::<View>() == 480);
 
-    /// `Views`, 16320 bytes, first in `shaders-glsl/attribute.glsl`.
+    /// `Views`, 16320 bytes, first in `shaders-glsl/ambient.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Views {

@@ -1,16 +1,12 @@
 // Rays of pixels, and the projection of discs, for pull–push.
 
+#include "lib/ray_step.glsl"
+
 layout(constant_id = 28) const bool PAPER = false; // rules as published
 
 // Projected size of a unit length parallel to the image plane, px; at distance 1 in perspective.
 float focal_scale() {
     return sqrt(view.jacobian);
-}
-
-// Step of the ray through a screen position per unit of distance.
-vec3 ray_step(vec2 at) {
-    if (!PERSPECTIVE) return view.forward_hi.xyz;
-    return (at.x * view.ray_hi[0].xyz + at.y * view.ray_hi[1].xyz + view.ray_hi[2].xyz) / view.near;
 }
 
 // Parallel projection of a vector at distance 1, px.

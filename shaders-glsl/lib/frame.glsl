@@ -26,6 +26,7 @@ layout(set = 0, binding = 0, std140) uniform Frame {
     float shininess;
     float pixel_filter;       // variance of the filter after shading, px²
     float edl;                // strength of eye-dome lighting
+    float ao;                 // strength of ambient occlusion
     float pixel_width;        // at distance 1 in perspective, at every distance otherwise
     vec2 origin;              // of the viewport in the target, px
 } frame;

@@ -63,6 +63,7 @@ fn cases() -> Vec<Case> {
             .asking("own colours", |settings, _| settings.shading = Shading::Colour),
         coloured(perspective_ewa::METHOD)
             .asking("own colours, eye-dome lighting", |settings, _| settings.shading = Shading::Edl),
+        coloured(perspective_ewa::METHOD).asking("lit, ambient occlusion", |settings, _| settings.ao = 1.0),
         coloured(perspective_ewa::METHOD).asking("lit, a mask", |settings, _| settings.alpha = Alpha::Mask),
         coloured(perspective_ewa::METHOD)
             .asking("lit, nearest surface alone", |settings, _| settings.edges = Edges::Nearest),

@@ -128,13 +128,14 @@ fn settings(settings: &Settings) -> Value {
         edges,
         shading,
         edl,
+        ao,
         background,
         lighting,
     } = settings;
     let Splatting { footprint, kernel, filter, visibility, normalization, shade } = splatting;
     if let Some(pull_push) = pull_push {
         return json!({
-            "rules": pull_push.rules.name(), "lod": lod, "max_points": max_points, "cull": cull.name(), "shading": shading.name(), "edl": edl, "background": background,
+            "rules": pull_push.rules.name(), "lod": lod, "max_points": max_points, "cull": cull.name(), "shading": shading.name(), "edl": edl, "ao": ao, "background": background,
             "lighting": light(lighting),
         });
     }
@@ -142,7 +143,7 @@ fn settings(settings: &Settings) -> Value {
         "footprint": footprint.name(), "kernel": kernel.to_string(), "filter": filter.name(),
         "visibility": visibility.name(), "normalization": normalization.name(), "shade": shade.name(),
         "cutoff": cutoff, "lowpass": lowpass, "pixel_filter": pixel_filter, "widen": widen.name(), "lod": lod, "max_points": max_points, "epsilon": epsilon, "cull": cull.name(),
-        "alpha": alpha.name(), "edges": edges.name(), "shading": shading.name(), "edl": edl,
+        "alpha": alpha.name(), "edges": edges.name(), "shading": shading.name(), "edl": edl, "ao": ao,
         "background": background, "lighting": light(lighting),
     })
 }

@@ -17,7 +17,7 @@
 //!    and whether they are dispatches or draws. Layouts, barriers, label and timer follow; a test compares it with the shader's declarations.
 //! 3. `frame/methods/METHOD.rs`: its position among the method's passes, on each path. Passes after `normalize`, `surface` and
 //!    `shade` can modify `Image`, on the compute path; on the raster path only if `raster_targets` makes it an image that is stored, too, as for
-//!    `edl` and `filter`.
+//!    `ambient`, `edl` and `filter`.
 //! 4. `verify/reference/NAME.rs`, of pull–push `verify/reference/pull_push/NAME.rs`: the same pass in float64, called where the reference
 //!    computes a pixel.
 //! 5. `tests/engine/NAME.rs`: compares pictures with the reference.

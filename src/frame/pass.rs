@@ -127,6 +127,8 @@ pub enum Domain {
     Pixels,
     /// One invocation per block of pixels.
     Blocks,
+    /// One invocation per block of 2 × 2 pixels, and per corner of such blocks.
+    Quads,
     /// One workgroup per tile.
     Tiles,
     /// One workgroup per tile, for the splats that face the eye.
@@ -188,6 +190,7 @@ impl Domain {
             Self::Triangles | Self::LargeTriangles | Self::PixelsOfTriangles => Scope::Triangles,
             Self::Pixels
             | Self::Blocks
+            | Self::Quads
             | Self::Tiles
             | Self::FrontTiles
             | Self::WholeTiles

@@ -199,6 +199,10 @@ impl PreparedPass {
                     (Domain::Blocks, _) => {
                         enc.dispatch(pipeline, &sets, &(), grid_over_blocks(frame.targets.size));
                     }
+                    (Domain::Quads, _) => {
+                        let corners = frame.targets.size.map(|side| side / 2 + 1);
+                        enc.dispatch(pipeline, &sets, &(), grid_over_pixels(corners));
+                    }
                     _ => enc.dispatch(pipeline, &sets, &(), grid_over_pixels(frame.targets.size)),
                 }
                 continue;

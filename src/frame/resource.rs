@@ -45,6 +45,8 @@ pub enum Resource {
     Pushed,
     /// Linear colour and α, or the quantity that is shaded.
     Image,
+    /// Ambient occlusion of blocks of 2 × 2 pixels, if the picture has it.
+    Occlusion,
     /// The filtered image, over the background, if pixels are filtered.
     Filtered,
     /// Unit normals, if requested.
@@ -84,6 +86,7 @@ impl Resource {
             Self::Pulled => "pulled",
             Self::Pushed => "pushed",
             Self::Image => "image",
+            Self::Occlusion => "occlusion",
             Self::Filtered => "filtered",
             Self::Normal => "normal",
             Self::Depth => "depth",

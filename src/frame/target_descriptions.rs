@@ -27,6 +27,8 @@ pub struct TargetDescription {
 pub enum Kind {
     /// An image.
     Image(ImageUse),
+    /// An image with a pixel per 2 × 2 pixels of the picture.
+    Halved(ImageUse),
     /// A buffer of so many bytes per pixel, row by row from the top left.
     Pixels(u64),
     /// A list of tiles.
@@ -72,6 +74,7 @@ impl Resource {
             Self::HostDepth => &[&resource::HOST_DEPTH],
             Self::IncompleteFrame => &[&resource::INCOMPLETE_FRAME],
             Self::Image => &[&resource::IMAGE_OUTPUT],
+            Self::Occlusion => &[&resource::OCCLUSION],
             Self::Filtered => &[&resource::FILTERED],
             Self::Normal => &[&resource::NORMAL_OUTPUT],
             Self::Depth => &[&resource::DEPTH_OUTPUT],
@@ -88,13 +91,20 @@ pub fn describe(variant: &Variant) -> Vec<TargetDescription> {
         (None, Rasterizer::Draw) => raster_targets(variant),
         (None, Rasterizer::Compute) => compute_targets(variant),
     };
-    std::iter::once(filtered(variant)).chain(list).flatten().collect()
+    [filtered(variant), occlusion(variant)].into_iter().chain(list).flatten().collect()
 }
 
 /// The filtered picture.
 fn filtered(variant: &Variant) -> Option<TargetDescription> {
     let filtered = stored(Resource::Filtered, COLOUR, &resource::FILTERED);
     (variant.filter_radius > 0).then_some(filtered)
+}
+
+/// The ambient occlusion.
+fn occlusion(variant: &Variant) -> Option<TargetDescription> {
+    let shader = Some(&resource::OCCLUSION);
+    let kind = Kind::Halved(ImageUse::StoredOutput);
+    variant.ao.then_some(TargetDescription { resource: Resource::Occlusion, format: COLOUR, kind, shader })
 }
 
 fn image(
@@ -134,7 +144,7 @@ pub fn coverage(variant: &Variant) -> Option<TargetDescription> {
     variant.coverage.then_some(coverage)
 }
 
-/// Format of the picture, and of normals.
+/// Format of the picture, of normals, and of ambient occlusion.
 const COLOUR: Format = Format::R32G32B32A32_SFLOAT;
 
 /// An image that compute shaders store.
@@ -159,11 +169,11 @@ fn raster_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
     let output = |resource, format| image(resource, format, ImageUse::Output, None);
     let [sums0, sums1] = [sums(variant.wide_sums0()), sums(variant.wide_sums1())];
     let loaded = |resource, format, shader| image(resource, format, ImageUse::FilteredOutput, Some(shader));
-    let picture = match variant.filter_radius > 0 || variant.mixed || variant.edl {
+    let picture = match variant.filter_radius > 0 || variant.mixed || variant.reads_depth() {
         false => output(Resource::Image, COLOUR),
         true => loaded(Resource::Image, COLOUR, &resource::IMAGE_OUTPUT),
     };
-    let depth = match variant.edl {
+    let depth = match variant.reads_depth() {
         false => variant.outputs.depth.then(|| output(Resource::Depth, Format::R32_SFLOAT)),
         true => Some(loaded(Resource::Depth, Format::R32_SFLOAT, &resource::DEPTH_OUTPUT)),
     };
@@ -249,6 +259,7 @@ fn splat_resources(variant: &Variant) -> Vec<&'static shaders::Resource> {
 pub fn pixel_size(target: &TargetDescription) -> f64 {
     match target.kind {
         Kind::Image(_) => pixel_bytes(target.format) as f64,
+        Kind::Halved(_) => pixel_bytes(target.format) as f64 / 4.0,
         Kind::Pixels(bytes) => bytes as f64,
         Kind::Tiles => tile_list::ENTRY as f64 / f64::from(TILE * TILE),
     }

@@ -92,6 +92,10 @@ impl RenderTargets {
             let name = target.resource.name();
             let memory = match target.kind {
                 Kind::Image(also) => Memory::Image(Image::target(device, name, target.format, size, also)?),
+                Kind::Halved(also) => {
+                    let size = size.map(|side| side.div_ceil(2));
+                    Memory::Image(Image::target(device, name, target.format, size, also)?)
+                }
                 Kind::Pixels(bytes) => {
                     Memory::Buffer(Buffer::storage(device, name, bytes * pixels_of(size))?)
                 }
@@ -120,7 +124,9 @@ impl RenderTargets {
     fn bindings(&self) -> impl Iterator<Item = (&'static shaders::Resource, Binding<'_>)> {
         self.list.iter().filter_map(|(target, memory)| {
             let binding = match (memory, target.kind) {
-                (Memory::Image(image), Kind::Image(also)) if also.is_stored() => Binding::Stored(image),
+                (Memory::Image(image), Kind::Image(also) | Kind::Halved(also)) if also.is_stored() => {
+                    Binding::Stored(image)
+                }
                 (Memory::Image(image), _) => Binding::Sampled(image),
                 (Memory::Buffer(buffer), _) => Binding::whole(buffer),
             };
@@ -158,7 +164,7 @@ impl RenderTargets {
     /// Adds the access of a target to `uses`, if it exists.
     pub fn extend_uses(&self, uses: &mut Vec<Use>, resource: Resource, access: Access) {
         match self.find(resource) {
-            Some((Kind::Image(also), Memory::Image(image))) if also.is_stored() => {
+            Some((Kind::Image(also) | Kind::Halved(also), Memory::Image(image))) if also.is_stored() => {
                 uses.push(image.with(access.of_stored_image()));
             }
             Some((_, Memory::Image(image))) => uses.push(image.with(access.of_image())),
@@ -192,7 +198,7 @@ impl RenderTargets {
 
     /// Output images, to be read back.
     pub fn outputs(&self) -> impl Iterator<Item = &Image> {
-        // Depths may be there for eye-dome lighting alone.
+        // Depths may be there for eye-dome lighting or ambient occlusion alone.
         let depth = self.outputs.depth.then_some(Resource::Depth);
         [Some(self.final_image()), Some(Resource::Normal), depth, Some(Resource::Id)]
             .into_iter()

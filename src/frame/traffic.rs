@@ -107,7 +107,9 @@ fn declared(pass: &Pass, variant: &SceneVariant, scene: &Streams) -> PassTraffic
     let streams = if over_surfels { of_streams(pass, &variant.frame, scene) } else { 0 };
     let is_image = |resource: &Resource| {
         let targets = describe(&variant.frame);
-        targets.iter().any(|target| target.resource == *resource && matches!(target.kind, Kind::Image(_)))
+        targets.iter().any(|target| {
+            target.resource == *resource && matches!(target.kind, Kind::Image(_) | Kind::Halved(_))
+        })
     };
     let writes_image = pass.writes.iter().chain(&attached).any(is_image);
     let projects = over_surfels && pass.writes.contains(&Resource::Nearest);

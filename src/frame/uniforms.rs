@@ -157,6 +157,7 @@ fn frame(
     frame.attribute_lowpass = settings.attribute_lowpass();
     frame.pixel_filter = settings.pixel_filter;
     frame.edl = settings.edl;
+    frame.ao = settings.ao;
     frame.pixel_width = rays.pixel_width() as f32;
     let light = &settings.lighting;
     frame.background = settings.background.map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);

@@ -57,6 +57,8 @@ pub struct Variant {
     pub mixed: bool,
     /// Radius of the filter of pixels after shading, px; 0: none.
     pub filter_radius: u32,
+    /// Passes `occlusion` and `ambient` darken the picture.
+    pub ao: bool,
     /// Pass `edl` darkens the picture.
     pub edl: bool,
     /// Quantity that the picture shows.
@@ -209,7 +211,7 @@ impl Variant {
             widen_small: settings.widen == Widen::Small && splatting.filter != Filter::None,
             count: options.count,
             normals: lit_pixels || shading == Shading::Normal || options.outputs.normal,
-            depth: shading == Shading::Depth || edl || options.outputs.depth,
+            depth: shading == Shading::Depth || edl || settings.occludes() || options.outputs.depth,
             colours: needs_colour && (undivided || shade_splats || coloured),
             unbounded_colours: colours.iter().any(|colours| floats.contains(colours)),
             primitives: streams.iter().any(|streams| streams.primitives.any()),
@@ -220,6 +222,7 @@ impl Variant {
             coverage: settings.drawn_alpha() == Alpha::Coverage,
             mixed: settings.mixes_edges(),
             filter_radius: settings.filter_radius(),
+            ao: settings.occludes(),
             edl,
             shading,
             lights: if shading == Shading::Lit { settings.lighting.directional.len() as u32 } else { 0 },
@@ -249,9 +252,14 @@ impl Variant {
         Self { sliced, split: self.split || sliced, mixed: self.mixed && !sliced, ..self }
     }
 
-    /// Whether depths are stored: as an output, or for `edl`.
+    /// Whether passes after shading read depths.
+    pub fn reads_depth(&self) -> bool {
+        self.ao || self.edl
+    }
+
+    /// Whether depths are stored: as an output, or for passes after shading.
     pub fn stores_depth(&self) -> bool {
-        self.outputs.depth || self.edl
+        self.outputs.depth || self.reads_depth()
     }
 
     /// Whether splats take the tile path.
@@ -357,7 +365,8 @@ impl Variant {
             .with(constant::SUM_DEPTH, self.depth)
             .with(constant::SUM_COLOURS, self.colours)
             .with(constant::FILTER_RADIUS, self.filter_radius)
-            .with(constant::LATE_BACKGROUND, self.filter_radius > 0 || self.edl)
+            .with(constant::LATE_BACKGROUND, self.filter_radius > 0 || self.reads_depth())
+            .with(constant::EDL, self.edl)
             .with(constant::SHADING, self.shading as u32)
             .with(constant::LIGHTS, self.lights)
             .with(constant::OUT_NORMAL, self.outputs.normal)

@@ -20,7 +20,7 @@ chapter!(view, "view.md", "view");
 chapter!(convert, "convert.md");
 chapter!(scenes, "scenes.md");
 chapter!(bench, "bench.md");
-chapter!(methods, "methods.md", "epsilon", "footprints", "coverage", "edl";
+chapter!(methods, "methods.md", "epsilon", "footprints", "coverage", "edl", "ao";
     chapter!(zwicker2004, "methods/zwicker2004.md", "lowpass", "clips");
     chapter!(ren2002, "methods/ren2002.md");
     chapter!(botsch2003, "methods/botsch2003.md");

@@ -49,6 +49,9 @@ pub struct Settings {
     pub shading: Shading,
     /// Strength of [`Shading::Edl`], at most [`Settings::MOST_EDL`].
     pub edl: f32,
+    /// Strength of ambient occlusion, at most [`Settings::MOST_AO`]; 0: none. A coloured picture is multiplied by the part of the light from
+    /// around that reaches each pixel's surface, to this power; other quantities are not. See the guide, Methods, Ambient occlusion.
+    pub ao: f32,
     /// Background colour, linear RGB; `None` is transparent (all channels 0). Partly covered pixels are blended with it.
     pub background: Option<[f32; 3]>,
     /// Lights and material of [`Shading::Lit`].
@@ -73,6 +76,7 @@ impl Default for Settings {
             edges: Edges::Mixed,
             shading: Shading::Lit,
             edl: Self::DEFAULT_EDL,
+            ao: 0.0,
             background: None,
             lighting: Lighting::default(),
         }
@@ -102,6 +106,11 @@ impl Settings {
     /// Largest strength of eye-dome lighting.
     pub const MOST_EDL: f32 = 100.0;
 
+    /// Strength of ambient occlusion where none is given.
+    pub const DEFAULT_AO: f32 = 1.0;
+    /// Largest strength of ambient occlusion.
+    pub const MOST_AO: f32 = 10.0;
+
     /// Least low-pass variance at which every splat covers a pixel centre, px²: `(0.71 / F)²`, so that the cut-off radius is at least √½
     /// px. The visibility footprint has at least this.
     pub fn least_lowpass(&self) -> f32 {
@@ -113,9 +122,14 @@ impl Settings {
         if self.shading.is_coloured() { (3.0 * self.pixel_filter.sqrt()).ceil() as u32 } else { 0 }
     }
 
-    /// Whether a pass after shading blends with the background: the filter of pixels, or eye-dome lighting.
+    /// Whether ambient occlusion darkens the picture.
+    pub fn occludes(&self) -> bool {
+        self.ao > 0.0 && self.shading.is_coloured()
+    }
+
+    /// Whether a pass after shading blends with the background: the filter of pixels, eye-dome lighting, or ambient occlusion.
     pub fn has_late_background(&self) -> bool {
-        self.filter_radius() > 0 || self.shading == Shading::Edl
+        self.filter_radius() > 0 || self.shading == Shading::Edl || self.occludes()
     }
 
     /// Low-pass variance of the attribute footprint, px²: the variance that is added to a splat's, or with [`Widen::Small`] its lower
@@ -147,12 +161,13 @@ impl Settings {
             && self.shading.is_coloured()
     }
 
-    /// The settings by which subpasses of a host draw: over the host's picture, without the filter of pixels and eye-dome lighting, which read
-    /// neighbours, and without [`Cull::Auto`] and [`Edges::Mixed`], which need other passes before and after them.
+    /// The settings by which subpasses of a host draw: over the host's picture, without the filter of pixels, eye-dome lighting and ambient
+    /// occlusion, which read neighbours, and without [`Cull::Auto`] and [`Edges::Mixed`], which need other passes before and after them.
     pub fn in_subpasses(&self) -> Self {
         let cull = if self.cull == Cull::Auto { Cull::None } else { self.cull };
         let shading = if self.shading == Shading::Edl { Shading::Colour } else { self.shading };
-        Self { background: None, pixel_filter: 0.0, cull, edges: Edges::Nearest, shading, ..self.clone() }
+        let edges = Edges::Nearest;
+        Self { background: None, pixel_filter: 0.0, cull, edges, shading, ao: 0.0, ..self.clone() }
     }
 
     /// Returns an error if the scene has lines or triangles, as `there` tells, and the method draws splats only.
@@ -221,6 +236,13 @@ impl Settings {
                 "the strength of eye-dome lighting is {}: give a number from 0 to {}",
                 self.edl,
                 Self::MOST_EDL
+            )));
+        }
+        if !(0.0..=Self::MOST_AO).contains(&self.ao) {
+            return Err(Error::Usage(format!(
+                "the strength of ambient occlusion is {}: give a number from 0 to {}",
+                self.ao,
+                Self::MOST_AO
             )));
         }
         if !(0.0..=Self::MOST_LOD).contains(&self.lod) {

@@ -38,6 +38,8 @@ pub struct SavedSettings {
     shading: String,
     #[serde(default = "default_edl")]
     edl: f32,
+    #[serde(default)]
+    ao: f32,
     /// Linear colour.
     background: Option<[f32; 3]>,
     /// Whether the panel is hidden.
@@ -97,6 +99,7 @@ impl SavedSettings {
             edges: settings.edges.name().into(),
             shading: settings.shading.name().into(),
             edl: settings.edl,
+            ao: settings.ao,
             background: settings.background,
             panel_hidden,
         }
@@ -131,6 +134,7 @@ impl SavedSettings {
             edges: Edges::named(&self.edges)?,
             shading: Shading::named(&self.shading)?,
             edl: self.edl,
+            ao: self.ao,
             background: self.background,
             lighting: preset.lighting,
         };
@@ -183,6 +187,7 @@ mod tests {
             edges: Edges::Nearest,
             shading: Shading::Normal,
             edl: 0.7,
+            ao: 0.8,
             background: Some([0.1, 0.2, 1.0]),
             ..Settings::default()
         };

@@ -255,6 +255,19 @@ fn a_strength_of_eye_dome_lighting_implies_it() {
 }
 
 #[test]
+fn ambient_occlusion_has_a_strength() {
+    let Some(program) = Program::with_device("ambient_occlusion_has_a_strength") else { return };
+    let picture = |options: &str| {
+        program.run(&format!("render {SPHERE} --size 48x32 -o a.png {options}")).text();
+        program.png("a.png")
+    };
+    let [default, named, weaker, none, without] = ["--ao", "--ao=1", "--ao=0.5", "--ao=0", ""].map(picture);
+    assert!(default == named && default != weaker && weaker != none && none == without);
+    let run = program.run(&format!("render {SPHERE} --size 48x32 -o a.png --ao=-1"));
+    assert!(run.error(2).contains("the strength of ambient occlusion is -1"), "{}", run.err);
+}
+
+#[test]
 fn coloured_points_on_no_surface_are_shaded_by_eye_dome_lighting() {
     let program = Program::new();
     let cloud = |header: &str, depth: f64, colour: &str| {

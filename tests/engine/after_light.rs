@@ -8,7 +8,7 @@ use surfel::bench::subject::Subject;
 use surfel::geometry::{Camera, Surfels};
 use surfel::settings::methods::Method;
 use surfel::settings::{Cull, Edges, Shading};
-use surfel::verify::reference::{Projector, darkened, filtered};
+use surfel::verify::reference::{Projector, darkened, filtered, occluded};
 use surfel::verify::scenes;
 use surfel::verify::truth;
 use surfel::vk::Device;
@@ -44,6 +44,9 @@ fn expected(
     size: [u32; 2],
 ) -> Vec<[f64; 4]> {
     let mut picture = colours;
+    if settings.occludes() {
+        picture = occluded(projector, &picture, depths, size);
+    }
     if settings.shading == Shading::Edl {
         picture = darkened(projector, &picture, depths, size);
     }
@@ -65,6 +68,7 @@ pub fn difference(
     let shading = if settings.shading == Shading::Edl { Shading::Colour } else { settings.shading };
     let before = Settings {
         shading,
+        ao: 0.0,
         lowpass: settings.lowpass - settings.pixel_filter,
         pixel_filter: 0.0,
         background: None,

@@ -31,6 +31,7 @@ fn passes_and_targets_match_the_plan() {
     let others = [
         Settings { splatting: axis, ..splats_alone() },
         Settings { alpha: Alpha::Coverage, ..splats_alone() },
+        Settings { ao: 1.0, ..splats_alone() },
     ];
     for settings in frames.chain(others) {
         for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {

@@ -3,6 +3,7 @@
 
 mod after_light;
 mod agreement;
+mod ambient_occlusion;
 mod baseline;
 mod bench;
 mod bench_advice;

@@ -235,6 +235,9 @@ pub struct RenderSettings {
     /// Strength of --shading edl, which it implies: how much pixels behind their neighbours are darkened
     #[arg(long, value_name = "STRENGTH", default_value_t = Settings::DEFAULT_EDL, allow_hyphen_values = true)]
     pub edl: f32,
+    /// Ambient occlusion: darkens cavities and creases, where little light from around arrives, with this strength [default without a strength: 1]
+    #[arg(long, value_name = "STRENGTH", num_args = 0..=1, require_equals = true, default_value_t = 0.0, default_missing_value = "1", hide_default_value = true)]
+    pub ao: f32,
     /// Meaning of α [default: the method's]
     #[arg(long, value_parser = choice::<Alpha>())]
     pub alpha: Option<Alpha>,
@@ -336,6 +339,7 @@ impl RenderSettings {
             edges: self.edges.unwrap_or(preset.edges),
             shading: self.shading.unwrap_or(preset.shading),
             edl: self.edl,
+            ao: self.ao,
             background: self.background.linear(),
             lighting: preset.lighting,
         }

@@ -13,8 +13,8 @@
 //! ```
 //!
 //! With `--cull auto`, visibility first runs over the splats that face the eye, and `sides` drops some of the others. On the compute path
-//! `surface` draws all of the picture then, and again the tiles that the rest of the others may change. `edl` darkens
-//! the picture, and `filter` filters it, if the settings say so.
+//! `surface` draws all of the picture then, and again the tiles that the rest of the others may change. `occlusion`,
+//! `ambient` and `edl` darken the picture, and `filter` filters it, if the settings say so.
 //!
 //! If ε is measured along the camera's axis, visibility has its own footprints, of discs moved by ε.
 

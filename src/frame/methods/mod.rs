@@ -5,9 +5,11 @@ mod nearest;
 mod pull_push;
 
 use super::pass::Pass;
+use super::passes::ambient::AMBIENT;
 use super::passes::cull::CULL;
 use super::passes::edl::EDL;
 use super::passes::filter::FILTER;
+use super::passes::occlusion::OCCLUSION;
 use super::passes::open::EDGES;
 use super::passes::order::ORDER;
 use super::passes::sides::SIDES;
@@ -28,7 +30,7 @@ pub enum Path {
 }
 
 /// Passes of a frame of `variant` with so many scenes, in order; in subpasses of a host, raster passes are last, and none needs
-/// neighbours: no eye-dome lighting, and pixels are not filtered. Frames by tiles first sort surfels in arbitrary order, and cull clusters of surfels with known bounds.
+/// neighbours: no ambient occlusion, no eye-dome lighting, and pixels are not filtered. Frames by tiles first sort surfels in arbitrary order, and cull clusters of surfels with known bounds.
 pub fn passes(variant: &Variant, path: Path, scenes: usize) -> Vec<&'static Pass> {
     let mut list = match (variant.pull_push, variant.visibility) {
         (Some(settings), _) => pull_push::passes(variant, settings.storage, scenes),
@@ -42,9 +44,14 @@ pub fn passes(variant: &Variant, path: Path, scenes: usize) -> Vec<&'static Pass
     }
     if !matches!(path, Path::Subpasses { .. }) {
         list.extend(
-            [(variant.edl, &EDL), (variant.filter_radius > 0, &FILTER)]
-                .iter()
-                .filter_map(|(there, pass)| there.then_some(*pass)),
+            [
+                (variant.ao, &OCCLUSION),
+                (variant.ao, &AMBIENT),
+                (variant.edl, &EDL),
+                (variant.filter_radius > 0, &FILTER),
+            ]
+            .iter()
+            .filter_map(|(there, pass)| there.then_some(*pass)),
         );
     }
     if variant.clusters {

@@ -3,6 +3,7 @@
 //! Visibility, attribute, nearest and normalize have a compute and a raster pass, chosen by [`crate::Rasterizer`]; so has project for
 //! surfels. Raster passes also run in subpasses of a host ([`crate::embed::native`]).
 
+pub mod ambient;
 pub mod attribute;
 pub mod behind;
 pub mod boxes;
@@ -14,6 +15,7 @@ pub mod filter;
 pub mod footprint;
 pub mod nearest;
 pub mod normalize;
+pub mod occlusion;
 pub mod open;
 pub mod order;
 pub mod project;
@@ -71,6 +73,7 @@ mod tests {
                         pull_push,
                         primitives,
                         count,
+                        ao: count,
                         edl: count,
                         ..variant.frame
                     };
@@ -86,7 +89,7 @@ mod tests {
         all
     }
 
-    const RESOURCES: [Resource; 27] = [
+    const RESOURCES: [Resource; 28] = [
         Resource::VisibleClusters,
         Resource::Order,
         Resource::Splats,
@@ -108,6 +111,7 @@ mod tests {
         Resource::Pulled,
         Resource::Pushed,
         Resource::Image,
+        Resource::Occlusion,
         Resource::Filtered,
         Resource::Normal,
         Resource::Depth,

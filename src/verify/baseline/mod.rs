@@ -142,8 +142,8 @@ impl Baseline {
         let own = self::settings(settings);
         let is_own = (settings.splatting, settings.alpha, settings.pixel_filter)
             == (own.splatting, own.alpha, own.pixel_filter);
-        if !is_own || counts || settings.cull == Cull::Auto {
-            let text = "the CPU baseline draws splats alone: choose the mask for α, culling other than auto, the other choices of `baseline::settings`, and neither overlaps, weights nor eye-dome lighting";
+        if !is_own || counts || settings.cull == Cull::Auto || settings.occludes() {
+            let text = "the CPU baseline draws splats alone: choose the mask for α, culling other than auto, the other choices of `baseline::settings`, and neither overlaps, weights, eye-dome lighting nor ambient occlusion";
             return Err(Error::Usage(text.into()));
         }
         let view = View::new(camera, size, self.surfels.origin)?;

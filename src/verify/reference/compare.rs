@@ -99,6 +99,10 @@ impl Expected {
             let text = "what rounding may turn is known of splats alone: compare pull-push with the reference's picture";
             return Err(Error::Usage(text.into()));
         }
+        if settings.occludes() {
+            let text = "what rounding may turn is not known under ambient occlusion: compare pictures without it, and with `occluded` of their own distances";
+            return Err(Error::Usage(text.into()));
+        }
         settings.splatting.normalization.check_weights(surfels.weights.is_some())?;
         let projector = Projector::new(camera, size, settings)?;
         let model = ErrorModel { projector: &projector, rounding: tolerance.rounding };

@@ -3,13 +3,14 @@
 //! Its functions are named as the GPU passes and share no code with them. [`Projector::footprint`] projects a surfel to
 //! a splat, `sides` drops those of the far side of closed surfaces, `visibility` finds the depth up to which splats are blended, `coverage` the covered fraction of each pixel.
 //! `attribute` sums the visible splats, or `nearest` takes the first one; `normalize` divides and shades, `behind` mixes the surface behind into pixels at edges,
-//! `edl` darkens, and `filter` filters.
+//! `occlusion`, `ambient` and `edl` darken, and `filter` filters.
 //! [`ErrorBounds`] finds the pixels that float32 rounding can change, with every value they may take, from the float64
 //! frame alone; [`compare`] applies both.
 //!
 //! Spaces: *world* is the surfels' frame; *eye* is the camera's, where the distance `z = forward · z_eye` is above 0 in
 //! front; *pixels* count from the top left, pixel centres at half-integers.
 
+mod ambient;
 mod attribute;
 mod bands;
 mod behind;
@@ -30,6 +31,7 @@ mod image;
 pub mod levels;
 mod nearest;
 mod normalize;
+mod occlusion;
 mod projected_scene;
 mod projector;
 pub mod pull_push;
@@ -42,6 +44,7 @@ mod tests;
 mod tolerance;
 mod visibility;
 
+pub use ambient::{occluded, occlusions};
 pub use compare::{Comparison, Expected, Failure, compare};
 pub use edl::darkened;
 pub use error_bounds::{Admissible, ErrorBounds};
@@ -164,7 +167,8 @@ pub fn render<'a>(
 
 /// The passes after shading.
 fn after_light(projector: &Projector, frame: Frame) -> Frame {
-    filter::pass(&projector.settings, edl::pass(projector, frame))
+    let frame = edl::pass(projector, ambient::pass(projector, frame));
+    filter::pass(&projector.settings, frame)
 }
 
 /// The values of a band's pixels.

@@ -102,6 +102,10 @@ pub fn render<S: Traceable + ?Sized>(
         let text = "eye-dome lighting darkens pixels, and has no exact picture: shade by color, or lit";
         return Err(Error::Usage(text.into()));
     }
+    if settings.occludes() {
+        let text = "ambient occlusion is of what a picture shows, and has no exact picture: leave it out";
+        return Err(Error::Usage(text.into()));
+    }
     let eye = Eye::new(scene, camera, settings, size)?;
     let plan = Plan::new(&eye, size, settings.shading, options);
     let mut sums = Sums::new(size);

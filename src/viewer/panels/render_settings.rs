@@ -18,6 +18,9 @@ pub fn show(ui: &mut Ui, choices: &mut Choices<'_>) {
         ui.add(slider.text("strength"))
             .on_hover_text("How much pixels behind their neighbours are darkened.");
     }
+    if settings.shading.is_coloured() {
+        ambient_occlusion(ui, &mut settings.ao);
+    }
     colours(ui, choices);
     background(ui, choices);
     radii(ui, choices);
@@ -30,6 +33,21 @@ pub fn show(ui: &mut Ui, choices: &mut Choices<'_>) {
     culling(ui, settings);
     ui.checkbox(choices.parallel, "parallel projection")
         .on_hover_text("Objects at the pivot's distance keep their size.");
+}
+
+/// Shows whether ambient occlusion darkens the picture, and how much.
+fn ambient_occlusion(ui: &mut Ui, strength: &mut f32) {
+    let mut on = *strength > 0.0;
+    let changed = ui
+        .checkbox(&mut on, "ambient occlusion")
+        .on_hover_text("Darkens cavities and creases, where little light from around arrives.")
+        .changed();
+    if changed {
+        *strength = if on { Settings::DEFAULT_AO } else { 0.0 };
+    }
+    if on {
+        ui.add(Slider::new(strength, 0.1..=4.0).clamping(SliderClamping::Edits).text("strength"));
+    }
 }
 
 /// Shows which surfels are culled by their orientation.
