@@ -70,10 +70,10 @@ impl SceneView {
     }
 }
 
-/// `settings` with shading, background and α of `before`.
+/// `settings` with shading, its strengths, background and α of `before`.
 pub fn with_picture_of(settings: Settings, before: &Settings) -> Settings {
-    let Settings { shading, background, alpha, .. } = *before;
-    Settings { shading, background, alpha, ..settings }
+    let Settings { shading, edl, ao, background, alpha, .. } = *before;
+    Settings { shading, edl, ao, background, alpha, ..settings }
 }
 
 /// Whether a scene can be rendered with these settings.

@@ -35,7 +35,8 @@ impl Split {
     pub fn settings(&self, left: &Settings) -> Option<(Settings, f64)> {
         let right = self.settings.as_ref().filter(|_| self.on)?;
         // Both pictures have one shading and one background.
-        let right = Settings { shading: left.shading, background: left.background, ..right.clone() };
+        let Settings { shading, edl, ao, background, .. } = *left;
+        let right = Settings { shading, edl, ao, background, ..right.clone() };
         Some((right, self.at))
     }
 
@@ -115,6 +116,27 @@ fn title(name: &str, report: Option<&FrameReport>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::viewer::scene_view::with_picture_of;
+    use surfel::settings::Shading;
+
+    #[test]
+    fn methods_change_without_their_shading_and_its_strengths() {
+        let left = Settings {
+            shading: Shading::Edl,
+            edl: 0.5,
+            ao: 2.0,
+            background: Some([1.0; 3]),
+            ..Settings::default()
+        };
+        let split = Split { on: true, settings: Some(Settings::default()), ..Split::default() };
+        let right = split.settings(&left).unwrap().0;
+        for other in [right, with_picture_of(Settings::default(), &left)] {
+            assert_eq!(
+                (other.shading, other.edl, other.ao, other.background),
+                (left.shading, left.edl, left.ao, left.background)
+            );
+        }
+    }
 
     #[test]
     fn the_right_picture_has_another_method() {
