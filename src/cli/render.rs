@@ -74,15 +74,22 @@ pub fn run(args: &Render) -> Result<()> {
     };
     let mut loaded = load(&args.inputs, &options, &*bars)?;
     let method = method(args.method, &loaded.model)?;
-    let shading = args.render_settings.shading.unwrap_or_else(|| loaded.shading());
-    let settings = Settings { shading, ..args.settings(&method) };
+    let [shading_given, ao_given] = args.render_settings.chosen_shading();
+    let settings = args.settings(&method);
+    let suggested = loaded.shading();
+    let settings = Settings {
+        shading: if shading_given { settings.shading } else { suggested.shading },
+        ao: if ao_given { settings.ao } else { suggested.ao },
+        ..settings
+    };
     settings.check()?;
     settings.check_outputs(args.outputs())?;
     if !args.quiet {
         let input = args.inputs.first().map_or(Path::new(""), Path::new);
         let given = summary::Given {
             up: camera::up(&args.camera, file).is_some(),
-            shading: args.render_settings.shading.is_some(),
+            shading: shading_given,
+            ao: ao_given,
         };
         summary::assumptions(input, given, &loaded).iter().for_each(|line| progress::say(line));
     }

@@ -32,6 +32,8 @@ pub struct Given {
     pub up: bool,
     /// The shading.
     pub shading: bool,
+    /// Ambient occlusion.
+    pub ao: bool,
 }
 
 /// What was assumed of inputs that do not tell, a line each: the up direction, colours, and shading.
@@ -46,13 +48,20 @@ pub fn assumptions(input: &Path, given: Given, loaded: &LoadedModel) -> Vec<Stri
             suggestion.name
         )
     });
-    let shading = (!given.shading && loaded.shading() == Shading::Edl).then(|| {
+    let suggested = loaded.shading();
+    let shading = (!given.shading && suggested.shading == Shading::Edl).then(|| {
         format!(
             "{name}: {:.0} % of the normals are unlike their neighbours', so shaded by eye-dome lighting: --shading lit lights them",
             100.0 * loaded.scattered()
         )
     });
-    up.into_iter().chain(colours).chain(shading).collect()
+    let ao = (!given.ao && suggested.ao > 0.0).then(|| {
+        format!(
+            "{name}: {:.0} % of the points are on no surface, so darkened by ambient occlusion: --ao=0 leaves it out",
+            100.0 * loaded.billboards()
+        )
+    });
+    up.into_iter().chain(colours).chain(shading).chain(ao).collect()
 }
 
 /// Part of the surfels above which their culling is reported.

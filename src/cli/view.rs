@@ -82,7 +82,7 @@ fn loader(args: &View, up: Option<DVec3>) -> Result<viewer::Load> {
         ..Default::default()
     };
     let reader = Reader { options, quiet: args.quiet };
-    let (method, shading) = (args.method, args.render_settings.shading);
+    let (method, [shading_given, ao_given]) = (args.method, args.render_settings.chosen_shading());
     // The triangles belong to the inputs of the command, not to files that are opened later.
     let (truth, own) = (args.truth.clone(), args.inputs.clone());
     Ok(Arc::new(move |names: &[OsString], window: &dyn viewer::LoadListener| {
@@ -98,7 +98,7 @@ fn loader(args: &View, up: Option<DVec3>) -> Result<viewer::Load> {
         let inputs = load(names, &reader.options, &listener)?;
         let truth = truth.as_deref().filter(|_| *names == own);
         let surface = surface::of_inputs(names, truth, &reader.options, &inputs);
-        let shading = shading.is_none().then(|| inputs.shading());
+        let suggested = inputs.shading();
         let whole = loaded(inputs.model, inputs.up, inputs.suggestion)?;
         // Built-in scenes have no properties to read.
         let is_scene = names.iter().any(|name| scene(name).is_some());
@@ -107,7 +107,8 @@ fn loader(args: &View, up: Option<DVec3>) -> Result<viewer::Load> {
         let skipped = if is_scene { vec![] } else { inputs.skipped };
         Ok(Loaded {
             surface,
-            shading,
+            shading: (!shading_given).then_some(suggested.shading),
+            ao: (!ao_given).then_some(suggested.ao),
             properties: Some(viewer::PointProperties { names: skipped, read: Arc::new(read) }),
             info: SceneInfo {
                 points: inputs.read,

@@ -9,6 +9,7 @@ mod suggestion;
 mod warnings;
 
 pub use colouring::{Coloured, Colouring};
+pub use shading::SuggestedShading;
 pub use suggestion::{Suggestion, Uncoloured};
 
 use crate::estimate::{Estimate, Estimated};

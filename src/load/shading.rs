@@ -3,7 +3,7 @@
 use super::LoadedModel;
 #[cfg(doc)]
 use crate::estimate::Estimated;
-use crate::settings::Shading;
+use crate::settings::{Settings, Shading};
 
 /// Part of the points above which normals that mean nothing make a lit picture hard to read. It is above a tenth in airborne scans with trees and
 /// in pictures of depth cameras, and at most a hundredth in coloured scans of objects.
@@ -11,21 +11,39 @@ const MOST_SCATTERED: f64 = 0.04;
 /// Part of the points above which billboards, which have the same light, make a lit picture flat.
 const MOST_BILLBOARDS: f64 = 0.2;
 
+/// Shading, and what goes with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SuggestedShading {
+    /// The shading.
+    pub shading: Shading,
+    /// Strength of ambient occlusion; 0: none.
+    pub ao: f32,
+}
+
 impl LoadedModel {
-    /// The shading that shows the points' shape: [`Shading::Edl`] if they have colours, and many estimated normals mean nothing
-    /// ([`Estimated::scattered`]), or if many are billboards, otherwise [`Shading::Lit`]. Eye-dome lighting of points without colours shows
-    /// outlines alone.
-    pub fn shading(&self) -> Shading {
+    /// What shows the points' shape. If many of them are billboards, or have estimated normals that mean nothing ([`Estimated::scattered`]),
+    /// it is [`Shading::Edl`] for points with colours. Of points without, eye-dome lighting shows outlines alone: if many of these are billboards,
+    /// it is [`Shading::Lit`] with ambient occlusion. Otherwise it is [`Shading::Lit`].
+    pub fn shading(&self) -> SuggestedShading {
         let surfels = &self.model.surfels;
         let coloured = surfels.colours.is_some() || surfels.texture.is_some() || self.suggestion.is_some();
-        let scattered = self.scattered() > MOST_SCATTERED;
-        let billboards = self.estimated.billboards as f64 / surfels.len().max(1) as f64;
-        let flat = coloured && scattered || billboards > MOST_BILLBOARDS;
-        if flat { Shading::Edl } else { Shading::Lit }
+        let flat = self.billboards() > MOST_BILLBOARDS;
+        match coloured {
+            true if flat || self.scattered() > MOST_SCATTERED => {
+                SuggestedShading { shading: Shading::Edl, ao: 0.0 }
+            }
+            false if flat => SuggestedShading { shading: Shading::Lit, ao: Settings::DEFAULT_AO },
+            _ => SuggestedShading { shading: Shading::Lit, ao: 0.0 },
+        }
     }
 
     /// Part of the surfels whose normals are unlike their neighbours': [`Estimated::scattered`].
     pub fn scattered(&self) -> f64 {
         self.estimated.scattered as f64 / self.model.surfels.len().max(1) as f64
+    }
+
+    /// Part of the surfels that are billboards.
+    pub fn billboards(&self) -> f64 {
+        self.estimated.billboards as f64 / self.model.surfels.len().max(1) as f64
     }
 }

@@ -106,6 +106,8 @@ pub struct Loaded {
     pub method: Method,
     /// What the scene is first shaded by, instead of the usual shading; `None` for that.
     pub shading: Option<Shading>,
+    /// The first strength of ambient occlusion, instead of the usual one; `None` for that.
+    pub ao: Option<f32>,
     /// Information for the user.
     pub info: SceneInfo,
     /// Up direction of the world, a unit vector; the camera takes the nearest axis.
@@ -122,6 +124,7 @@ impl Loaded {
             colour_by: None,
             method,
             shading: None,
+            ao: None,
             info: SceneInfo::default(),
             up: DVec3::Y,
         }

@@ -41,6 +41,8 @@ pub struct Source {
     up: DVec3,
     /// The first shading, instead of the usual one; `None` for that.
     shading: Option<Shading>,
+    /// The first strength of ambient occlusion, likewise.
+    ao: Option<f32>,
 }
 
 /// A property that is being read.
@@ -55,7 +57,7 @@ struct Reading {
 impl Source {
     /// The source of what was loaded.
     pub fn new(
-        Loaded { model, surface, properties, colour_by, info, up, shading, method: _ }: Loaded,
+        Loaded { model, surface, properties, colour_by, info, up, shading, ao, method: _ }: Loaded,
     ) -> Self {
         let mut source = Self {
             extent: Extent::of(&model).unwrap_or_default(),
@@ -71,6 +73,7 @@ impl Source {
             info,
             up,
             shading,
+            ao,
         };
         if let Some(colour_by) = colour_by {
             source.colour_by_name(colour_by);
@@ -105,18 +108,20 @@ impl Source {
         self.up
     }
 
-    /// The scene's first shading instead of the usual one.
+    /// The scene's first shading and ambient occlusion instead of the usual ones.
     pub fn shaded(&self, settings: Settings) -> Settings {
-        let is_usual = settings.shading == Settings::default().shading;
-        let shading = self.shading.filter(|_| is_usual).unwrap_or(settings.shading);
-        Settings { shading, ..settings }
+        let usual = Settings::default();
+        let shading = self.shading.filter(|_| settings.shading == usual.shading);
+        let ao = self.ao.filter(|_| settings.ao == usual.ao);
+        Settings { shading: shading.unwrap_or(settings.shading), ao: ao.unwrap_or(settings.ao), ..settings }
     }
 
-    /// The usual shading instead of the scene's first one: the settings for any scene.
+    /// The usual shading and ambient occlusion instead of the scene's first ones: the settings for any scene.
     pub fn unshaded(&self, settings: Settings) -> Settings {
-        let is_first = self.shading == Some(settings.shading);
-        let shading = if is_first { Settings::default().shading } else { settings.shading };
-        Settings { shading, ..settings }
+        let usual = Settings::default();
+        let shading = self.shading.filter(|first| settings.shading == *first).map(|_| usual.shading);
+        let ao = self.ao.filter(|first| settings.ao == *first).map(|_| usual.ao);
+        Settings { shading: shading.unwrap_or(settings.shading), ao: ao.unwrap_or(settings.ao), ..settings }
     }
 
     /// What a camera frames.

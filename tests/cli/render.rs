@@ -268,7 +268,7 @@ fn ambient_occlusion_has_a_strength() {
 }
 
 #[test]
-fn coloured_points_on_no_surface_are_shaded_by_eye_dome_lighting() {
+fn points_on_no_surface_are_shaded_by_eye_dome_lighting_or_ambient_occlusion() {
     let program = Program::new();
     let cloud = |header: &str, depth: f64, colour: &str| {
         let part = |i: usize, step: f64| (step * i as f64).fract();
@@ -291,11 +291,12 @@ fn coloured_points_on_no_surface_are_shaded_by_eye_dome_lighting() {
     assert!(edl.0 != lit.0 && !edl.1 && !lit.1);
     assert!(render("cloud.xyz") == (edl.0, true));
     assert!(render("flat.xyz") == render("flat.xyz --shading lit"));
-    // Normals that mean nothing are lit unless most points face the eye, which has no shape.
-    let plain = "plain.xyz --color-by file --no-billboards";
-    assert!(render(plain) == render(&format!("{plain} --shading lit")));
-    let (edl, lit) = ["edl", "lit"]
-        .map(|shading| render(&format!("plain.xyz --color-by file --shading {shading}")))
-        .into();
-    assert!(render("plain.xyz --color-by file") == (edl.0.clone(), true) && edl.0 != lit.0);
+    // Without colours, eye-dome lighting shows outlines alone.
+    let plain = "plain.xyz --color-by file";
+    let normals = format!("{plain} --no-billboards");
+    assert!(render(&normals) == render(&format!("{normals} --shading lit")));
+    let (lit, occluded) = (render(&format!("{plain} --shading lit")), render(&format!("{plain} --ao")));
+    assert!(render(plain) == occluded && occluded != lit && render(&format!("{plain} --ao=0")) == lit);
+    let run = program.run(&format!("render {plain} --reference --up 0,1,0 --size 48x32 -o a.png"));
+    assert!(run.err.contains("so darkened by ambient occlusion: --ao=0 leaves it out"), "{}", run.err);
 }

@@ -229,15 +229,15 @@ pub struct Camera {
 /// Render settings.
 #[derive(Args, Debug)]
 pub struct RenderSettings {
-    /// What the picture shows [default: lit; edl for coloured points if many estimated normals mean nothing]
+    /// What the picture shows [default: lit; edl for coloured points if many are on no surface, or many estimated normals mean nothing]
     #[arg(long, value_parser = choice::<Shading>(), default_value_if("edl", ArgPredicate::IsPresent, Shading::Edl.name()))]
     pub shading: Option<Shading>,
     /// Strength of --shading edl, which it implies: how much pixels behind their neighbours are darkened
     #[arg(long, value_name = "STRENGTH", default_value_t = Settings::DEFAULT_EDL, allow_hyphen_values = true)]
     pub edl: f32,
-    /// Ambient occlusion: darkens cavities and creases, where little light from around arrives, with this strength [default without a strength: 1]
-    #[arg(long, value_name = "STRENGTH", num_args = 0..=1, require_equals = true, default_value_t = 0.0, default_missing_value = "1", hide_default_value = true)]
-    pub ao: f32,
+    /// Ambient occlusion: darkens cavities and creases, where little light from around arrives, with this strength, 1 if none is given [default: 0; 1 if many points without colours are on no surface]
+    #[arg(long, value_name = "STRENGTH", num_args = 0..=1, require_equals = true, default_missing_value = "1")]
+    pub ao: Option<f32>,
     /// Meaning of α [default: the method's]
     #[arg(long, value_parser = choice::<Alpha>())]
     pub alpha: Option<Alpha>,
@@ -321,6 +321,12 @@ impl Render {
 }
 
 impl RenderSettings {
+    /// Whether the shading and ambient occlusion are given. A given shading is shown as it is, without ambient occlusion that is not given.
+    pub fn chosen_shading(&self) -> [bool; 2] {
+        let shading = self.shading.is_some();
+        [shading, shading || self.ao.is_some()]
+    }
+
     /// The settings of a method with these changes and those of `axes`.
     fn settings(&self, axes: &Axes, method: &Method) -> Settings {
         let preset = method.settings();
@@ -339,7 +345,7 @@ impl RenderSettings {
             edges: self.edges.unwrap_or(preset.edges),
             shading: self.shading.unwrap_or(preset.shading),
             edl: self.edl,
-            ao: self.ao,
+            ao: self.ao.unwrap_or(0.0),
             background: self.background.linear(),
             lighting: preset.lighting,
         }
