@@ -12,6 +12,9 @@ const UNLIKE_AROUND: f32 = 0.25;
 /// Roughness, averaged over the neighbourhood, above which its points are on no surface. In the volume of a ball it is 0.2, and 0.14 at most in
 /// scans of smooth objects.
 const ROUGH_AROUND: f32 = 0.12;
+/// Least part of the points on no surface. Thin parts of an object, such as the tip of an ear, look alike, and would get holes: these are 3 % at
+/// most in scans of objects. Airborne scans with trees have 10 %.
+const LEAST_PART: f64 = 0.05;
 /// Radius of the disc of a point on no surface, in distances of its third neighbour: such discs touch, and do not merge.
 pub(super) const RADIUS: f32 = 0.5;
 
@@ -44,6 +47,10 @@ impl Scatter {
         // By majority: vegetation has no spots of surface, nor a surface spots of vegetation.
         let mut volume = vec![false; normals.len()];
         survey.each().for_each(|(site, _, near)| volume[site as usize] = around(&thick, site, near) > 0.5);
+        let count = volume.iter().filter(|volume| **volume).count();
+        if (count as f64) < LEAST_PART * survey.each().count() as f64 {
+            volume.fill(false);
+        }
         Self { scattered: unlike.iter().map(|unlike| *unlike > UNLIKE).collect(), volume }
     }
 }
@@ -102,7 +109,7 @@ mod tests {
             if i % 4 < 2 { point.with_x(side) } else { point.with_y(side) }
         };
         let [scattered, billboards] = share((0..6000).map(on_box).collect());
-        assert!(scattered < 0.2 && billboards < 0.05, "{scattered} {billboards}");
+        assert!(scattered < 0.2 && billboards == 0.0, "{scattered} {billboards}");
     }
 
     #[test]

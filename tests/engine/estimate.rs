@@ -26,11 +26,7 @@ struct Errors {
 fn errors(positions: &[Vec3], truth: &[Vec3]) -> Errors {
     let bits = |p: &Vec3| p.to_array().map(f32::to_bits);
     let truth: HashMap<_, _> = positions.iter().map(bits).zip(truth).collect();
-    let (_, estimated) = estimate(bare(positions.to_vec()));
-    // Thin parts, such as the wings of the feline, have few points.
-    assert!(100 * estimated.billboards <= positions.len() as u64, "{estimated:?}");
-    let how = Estimate { billboards: false, ..Estimate::default() };
-    let (surfels, estimated) = bare(positions.to_vec()).into_surfels(&how, &()).unwrap();
+    let (surfels, estimated) = estimate(Cloud { positions: positions.to_vec(), ..Default::default() });
     assert_eq!(estimated.normals_from_neighbours, positions.len() as u64);
     let pairs = surfels.positions.iter().zip(&surfels.normals).map(|(p, n)| (*n, *truth[&bits(p)]));
     let cosines: Vec<f32> =
@@ -123,7 +119,7 @@ fn duplicates_change_nothing() {
     let sphere = bumpy_sphere::sample(5000, 2).positions;
     let (once, _) = estimate(bare(sphere.clone()));
     let (tripled, counts) = estimate(bare([&sphere[..], &sphere, &sphere].concat()));
-    assert_eq!((tripled.len(), counts.normals_from_neighbours + counts.billboards), (15_000, 15_000));
+    assert_eq!((tripled.len(), counts.normals_from_neighbours), (15_000, 15_000));
     let by_place = |surfels: &Surfels| -> HashMap<[u32; 3], (Vec3, f32)> {
         let places = surfels.positions.iter().map(|p| p.to_array().map(f32::to_bits));
         places.zip(surfels.normals.iter().copied().zip(surfels.radii.iter().copied())).collect()
