@@ -39,6 +39,8 @@ mod ptx;
 mod quoted;
 mod reader;
 mod report;
+#[cfg(test)]
+mod round_trip;
 mod sniff;
 mod source;
 mod splat;

@@ -1,37 +1,12 @@
 //! Scans that are written and read again.
 
-use crate::formats::{
-    Attribute, Contents, Loaded, PointSource, ReadOptions, WantedAttributes, Written, read, read_bytes, write,
-};
-use crate::geometry::{Cloud, Colours, Ellipse, Surfels, View};
+use crate::formats::round_trip::{all, reversed};
+use crate::formats::{Attribute, Contents, PointSource, ReadOptions, Written, read, read_bytes, write};
+use crate::geometry::{Colours, Ellipse, Surfels, View};
 use glam::Vec3;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
-
-/// Options that keep all attributes.
-fn all() -> ReadOptions {
-    ReadOptions { attributes: WantedAttributes::All, ..Default::default() }
-}
-
-/// The surfels of a cloud's points, in reverse order, and what their file has beyond them.
-fn surfels(loaded: Loaded) -> (Surfels, PointSource, Cloud) {
-    let Loaded { cloud, report, attributes } = loaded;
-    let points = cloud.len();
-    let reversed: Vec<u32> = (0..points as u32).rev().collect();
-    let mut surfels = Surfels {
-        origin: cloud.origin,
-        positions: cloud.positions.clone(),
-        normals: cloud.normals.clone().unwrap_or_else(|| vec![Vec3::new(0.6, 0.0, 0.8); points]),
-        radii: vec![1.0; points],
-        colours: cloud.colours.clone(),
-        point_indices: Some((0..points as u32).collect()),
-        ..Default::default()
-    };
-    surfels.permute(&reversed);
-    let source = PointSource { points, attributes, survey: report.survey, skipped: report.skipped };
-    (surfels, source, cloud)
-}
 
 fn written(folder: &TempDir, surfels: &Surfels, inputs: &[PointSource]) -> (PathBuf, Written) {
     let path = folder.path().join("a.e57");
@@ -50,13 +25,13 @@ fn numbers(source: &PointSource, name: &str) -> Vec<f64> {
 fn scans_are_written_bit_by_bit_with_their_poses() {
     let folder = tempfile::tempdir().unwrap();
     let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/formats/scans.e57");
-    let (surfels_before, before, cloud_before) = surfels(read(&sample, &all(), &()).unwrap());
+    let (surfels_before, before, cloud_before) = reversed(read(&sample, &all(), &()).unwrap());
     let (path, notes) = written(&folder, &surfels_before, std::slice::from_ref(&before));
     assert_eq!(notes.left_out, ["radius: E57 has no such fields; LAS and LAZ files keep them"]);
     let loaded = read(&path, &all(), &()).unwrap();
     let scans = loaded.report.details.iter().find(|(name, _)| name == "scan 1");
     assert_eq!(scans.unwrap().1, "scan 1, 57 points, from [100, 2, 3]");
-    let (surfels_after, after, cloud_after) = surfels(loaded);
+    let (surfels_after, after, cloud_after) = reversed(loaded);
     assert_eq!(after.survey.scans, before.survey.scans);
     assert!(before.survey.scans.iter().all(|scan| scan.pose.is_some()));
     for name in ["x", "y", "z", "local_x", "local_y", "local_z", "intensity", "scan"] {
@@ -77,7 +52,7 @@ fn scans_are_written_bit_by_bit_with_their_poses() {
 fn attributes_of_other_formats_get_their_fields() {
     let folder = tempfile::tempdir().unwrap();
     let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/formats/format3.laz");
-    let (surfels_before, before, _) = surfels(read(&sample, &all(), &()).unwrap());
+    let (surfels_before, before, _) = reversed(read(&sample, &all(), &()).unwrap());
     let (path, notes) = written(&folder, &surfels_before, std::slice::from_ref(&before));
     assert_eq!(notes.left_out.len(), 1, "{notes:?}");
     let left_out = &notes.left_out[0];
@@ -87,7 +62,7 @@ fn attributes_of_other_formats_get_their_fields() {
     );
     let loaded = read(&path, &all(), &()).unwrap();
     assert_eq!(loaded.cloud.view, View::Unknown);
-    let (_, after, cloud) = surfels(loaded);
+    let (_, after, cloud) = reversed(loaded);
     for name in ["x", "y", "z", "intensity", "return_number", "number_of_returns"] {
         assert_eq!(numbers(&after, name), numbers(&before, name), "{name}");
     }
@@ -114,7 +89,7 @@ fn missing_numbers_are_flagged_and_limits_stated() {
     let text = format!(
         "ply\nformat ascii 1.0\nelement vertex 3\n{names}end_header\n0 0 0 0.5 1\n1 2 3 nan nan\n1 2 4 2.25 3\n"
     );
-    let (mut all_surfels, before, _) = surfels(read_bytes("a.ply", text.as_bytes(), &all()).unwrap());
+    let (mut all_surfels, before, _) = reversed(read_bytes("a.ply", text.as_bytes(), &all()).unwrap());
     all_surfels.ellipses = Some(vec![Ellipse::circle(Vec3::Z); 3]);
     let (path, notes) = written(&folder, &all_surfels, &[before]);
     assert_eq!(
@@ -128,7 +103,7 @@ fn missing_numbers_are_flagged_and_limits_stated() {
     {
         assert!(text.contains(part), "{part}");
     }
-    let (_, after, _) = surfels(read(&path, &all(), &()).unwrap());
+    let (_, after, _) = reversed(read(&path, &all(), &()).unwrap());
     for (name, [a, b]) in [("intensity", [0.5, 2.25]), ("time", [1.0, 3.0])] {
         let read = numbers(&after, name);
         assert!(read[0] == a && read[1].is_nan() && read[2] == b, "{name}: {read:?}");

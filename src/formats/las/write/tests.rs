@@ -1,9 +1,9 @@
 //! Files that are written and read again.
 
 use crate::error::{Error, Result};
+use crate::formats::round_trip::{all, reversed};
 use crate::formats::{
-    Attribute, Contents, Loaded, PointSource, ReadOptions, Values, WantedAttributes, Written, read,
-    read_bytes, write,
+    Attribute, Contents, Loaded, PointSource, ReadOptions, Values, Written, read, read_bytes, write,
 };
 use crate::geometry::{
     Clip, ClipLine, Clips, Cloud, Colours, Ellipse, Materials, Model, Primitives, Surfels, Weights,
@@ -19,27 +19,9 @@ struct File {
     inputs: Vec<PointSource>,
 }
 
-/// Options that keep all attributes.
-fn all() -> ReadOptions {
-    ReadOptions { attributes: WantedAttributes::All, ..Default::default() }
-}
-
 /// A file as the surfels of its points, in reverse order.
 fn file(loaded: Loaded) -> File {
-    let Loaded { cloud, report, attributes } = loaded;
-    let points = cloud.len();
-    let reversed: Vec<u32> = (0..points as u32).rev().collect();
-    let mut surfels = Surfels {
-        origin: cloud.origin,
-        positions: cloud.positions.clone(),
-        normals: cloud.normals.clone().unwrap_or_else(|| vec![Vec3::Z; points]),
-        radii: cloud.radii.clone().unwrap_or_else(|| vec![1.0; points]),
-        colours: cloud.colours.clone(),
-        point_indices: Some((0..points as u32).collect()),
-        ..Default::default()
-    };
-    surfels.permute(&reversed);
-    let source = PointSource { points, attributes, survey: report.survey, skipped: report.skipped };
+    let (surfels, source, cloud) = reversed(loaded);
     File { surfels, cloud, inputs: vec![source] }
 }
 
