@@ -1,8 +1,7 @@
 //! Pass `ambient`: darkens the picture by its ambient occlusion, the mean of the blocks around each pixel that show its surface.
 
-use super::filter::over_background;
 use super::occlusion::{self, Block, Depths, grid, radius};
-use super::{Frame, Projector};
+use super::{Frame, Projector, filter};
 use crate::settings::Shading;
 use glam::DVec2;
 use rayon::prelude::*;
@@ -31,12 +30,9 @@ pub fn occluded(
     let settings = &projector.settings;
     let is_last = settings.filter_radius() == 0 && settings.shading != Shading::Edl;
     let strength = f64::from(settings.ao);
-    let pixel = |(&[r, g, b, a], occlusion): (&[f64; 4], f64)| {
-        let factor = (1.0 - occlusion).max(DARKEST).powf(strength);
-        let colour = [factor * r, factor * g, factor * b, a];
-        if is_last { over_background(settings, colour) } else { colour }
-    };
-    colours.iter().zip(occlusions(projector, depths, size)).map(pixel).collect()
+    let factor = |occlusion: f64| (1.0 - occlusion).max(DARKEST).powf(strength);
+    let factors = occlusions(projector, depths, size).into_iter().map(factor);
+    filter::darkened(settings, colours, factors, is_last)
 }
 
 /// The occluded part of the light at each pixel of a picture of distances, 0 without a surface.

@@ -1,7 +1,6 @@
 //! Pass `edl`: darkens pixels behind their neighbours (boucheny2009).
 
-use super::filter::over_background;
-use super::{Frame, Projector};
+use super::{Frame, Projector, filter};
 use crate::settings::Shading;
 use rayon::prelude::*;
 
@@ -21,12 +20,12 @@ pub fn darkened(
     size: [u32; 2],
 ) -> Vec<[f64; 4]> {
     let settings = &projector.settings;
-    let factors = factors(projector, size, depths, depths);
-    let pixel = |(&[r, g, b, a], factor): (&[f64; 4], f64)| {
-        let colour = [factor * r, factor * g, factor * b, a];
-        if settings.filter_radius() > 0 { colour } else { over_background(settings, colour) }
-    };
-    colours.iter().zip(factors).map(pixel).collect()
+    filter::darkened(
+        settings,
+        colours,
+        factors(projector, size, depths, depths),
+        settings.filter_radius() == 0,
+    )
 }
 
 /// The factors of a picture's colours, of pixels at the distances `own` with neighbours at the distances `others`; 0 and infinite ones have

@@ -31,6 +31,20 @@ pub(super) fn over_background(settings: &Settings, [r, g, b, alpha]: [f64; 4]) -
     blended(settings, colour.into(), alpha)
 }
 
+/// Straight colours times these factors; over the background by the last pass that changes them.
+pub(super) fn darkened(
+    settings: &Settings,
+    colours: &[[f64; 4]],
+    factors: impl IntoIterator<Item = f64>,
+    is_last: bool,
+) -> Vec<[f64; 4]> {
+    let pixel = |(&[r, g, b, a], factor): (&[f64; 4], f64)| {
+        let colour = [factor * r, factor * g, factor * b, a];
+        if is_last { over_background(settings, colour) } else { colour }
+    };
+    colours.iter().zip(factors).map(pixel).collect()
+}
+
 /// Each value's mean over the neighbours within the picture, weighted by the Gaussian up to [`Settings::filter_radius`] in each direction.
 pub(super) fn convolved<const N: usize>(
     settings: &Settings,
