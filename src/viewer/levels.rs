@@ -1,4 +1,4 @@
-//! Levels of detail: surfels that stand for all points of a cell that is seen as a pixel or less.
+//! Levels of detail: a scene with surfels that stand for several points.
 
 use std::sync::Arc;
 use surfel::geometry::{Levels, Model, Parts};
