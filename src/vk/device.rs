@@ -28,6 +28,9 @@ pub struct DeviceOptions {
     /// Index or part of the name of the device; `None` selects the device with the highest score.
     pub select: Option<String>,
     /// Enables the validation layers and collects their messages.
+    ///
+    /// The layers may crash where a thread opens or drops a device while another one uses a device, except the first of the process
+    /// (seen with 1.3.239): there, use validated devices from one thread at a time.
     pub validate: bool,
     /// Capabilities to hide.
     pub limits: DeviceLimits,

@@ -4,9 +4,11 @@
 use crate::host::Host;
 use crate::host::frame::{Frame, Kind};
 use crate::host::mesh::Mesh;
+use crate::support::gpu::{Alone, alone};
 use crate::support::sampling::{Random, bumpy_sphere};
 use ash::vk;
 use glam::{DMat4, DVec3, Vec3};
+use std::ops::Deref;
 use std::sync::Arc;
 use surfel::embed::{self, Abilities, Options, Renderer, View};
 use surfel::geometry::{Camera, Surfels};
@@ -16,10 +18,25 @@ use surfel::{Rasterizer, Scene, Settings};
 /// Width and height of a frame, px.
 pub const SIZE: [u32; 2] = [160, 120];
 
+/// A host under validation.
+pub struct TestHost {
+    host: Host,
+    _alone: Alone,
+}
+
+impl Deref for TestHost {
+    type Target = Host;
+
+    fn deref(&self) -> &Host {
+        &self.host
+    }
+}
+
 /// Opens a host; without a device, prints a message and returns `None`. With `SURFEL_REQUIRE_GPU` set, it panics instead.
-pub fn open(wanted: fn(Abilities) -> Abilities) -> Option<Host> {
+pub fn open(wanted: fn(Abilities) -> Abilities) -> Option<TestHost> {
+    let alone = alone();
     match Host::open(wanted, true) {
-        Ok(host) => Some(host),
+        Ok(host) => Some(TestHost { host, _alone: alone }),
         Err(error) if std::env::var_os("SURFEL_REQUIRE_GPU").is_some() => panic!("{error}"),
         Err(error) => {
             eprintln!("SKIPPED, not passed: {error}");

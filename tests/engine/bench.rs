@@ -54,7 +54,13 @@ fn plan(scene: &str, points: u64, side: u32) -> Plan {
 fn runner(subjects: Vec<Rc<Subject>>) -> Option<Runner> {
     let device = device(DeviceLimits::default())?;
     Some(Runner::new(
-        Options { device: Some(device), cache: None, truth: TRUTH, effort: EFFORT, ..Default::default() },
+        Options {
+            device: Some(device.clone()),
+            cache: None,
+            truth: TRUTH,
+            effort: EFFORT,
+            ..Default::default()
+        },
         subjects,
     ))
 }
@@ -177,8 +183,13 @@ fn without_a_device_a_run_is_refused_with_a_reason() {
 fn an_unsupported_run_is_refused_and_the_next_one_runs() {
     let limits = DeviceLimits { max_image_side: Some(64), ..Default::default() };
     let Some(device) = device(limits) else { return };
-    let options =
-        Options { device: Some(device), cache: None, truth: TRUTH, effort: EFFORT, ..Default::default() };
+    let options = Options {
+        device: Some(device.clone()),
+        cache: None,
+        truth: TRUTH,
+        effort: EFFORT,
+        ..Default::default()
+    };
     let mut runner = Runner::new(options, Vec::new());
     let large = runner.run(&plan("scene:torus", 1000, 128)).unwrap();
     assert!(large.refused.is_some_and(|why| why.contains("128")), "the size is named");

@@ -1,18 +1,17 @@
 //! Pull–push, the float64 reference and the GPU, where a surface hides another: a scan, and two layers a few radii apart, against rays through
 //! the exact surface.
 
-use crate::support::gpu::{assert_silent, device};
+use crate::support::gpu::{TestDevice, assert_silent, device};
 use crate::support::mesh;
 use crate::support::pyramids::{FrameCase, Rendered};
 use crate::support::settings::points_alone;
 use glam::DVec3;
-use std::sync::Arc;
 use surfel::bench::subject::Subject;
 use surfel::geometry::{Camera, Cloud, Extent, Surfels};
 use surfel::settings::Cull;
 use surfel::settings::pull_push::{PullPush, Rules};
 use surfel::verify::truth::{self, Filter, Options};
-use surfel::vk::{Device, DeviceLimits};
+use surfel::vk::DeviceLimits;
 use surfel::{Picture, Precision, Settings};
 
 const SIZE: [u32; 2] = [1024, 1024];
@@ -71,7 +70,7 @@ fn case<'a>(subject: &Subject, surfels: &'a Surfels, rules: Rules) -> FrameCase<
 }
 
 /// The faults of the reference and of the GPU, if there is one.
-fn both(device: &Option<Arc<Device>>, case: &FrameCase, truth: &[f32], behind: f64) -> Vec<Faults> {
+fn both(device: &Option<TestDevice>, case: &FrameCase, truth: &[f32], behind: f64) -> Vec<Faults> {
     let gpu = device.as_ref().map(|device| case.by_gpu(device));
     let made = [case.by_reference()].into_iter().chain(gpu);
     let found: Vec<_> = made.map(|made| faults(truth, &made, behind)).collect();

@@ -1,24 +1,50 @@
 //! A device under validation, for tests that need one.
 
 use std::cell::RefCell;
-use std::sync::{Arc, OnceLock};
+use std::ops::Deref;
+use std::rc::{Rc, Weak};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use surfel::geometry::{Camera, Parts};
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
 use surfel::{FrameReport, Instances, Picture, RenderOptions, Renderer, Scene, Settings};
 
+/// A device under validation.
+pub struct TestDevice {
+    device: Arc<Device>,
+    /// Of devices that are not shared.
+    _alone: Option<Alone>,
+}
+
+impl Deref for TestDevice {
+    type Target = Arc<Device>;
+
+    fn deref(&self) -> &Arc<Device> {
+        &self.device
+    }
+}
+
 /// A device under validation, less what `limits` hide; `None`, said aloud, where there is none. With `SURFEL_REQUIRE_GPU` set, the lack of one
 /// is a failure. Without limits all tests share one device with the pipelines that they make, and its validation messages.
-pub fn device(limits: DeviceLimits) -> Option<Arc<Device>> {
-    static SHARED: OnceLock<Option<Arc<Device>>> = OnceLock::new();
+pub fn device(limits: DeviceLimits) -> Option<TestDevice> {
     if limits == DeviceLimits::default() {
-        SHARED.get_or_init(|| new_device(limits)).clone()
+        shared().map(|device| TestDevice { device, _alone: None })
     } else {
         new_device(limits)
     }
 }
 
 /// As [`device`], but a new one, for tests that count what is allocated or made.
-pub fn new_device(limits: DeviceLimits) -> Option<Arc<Device>> {
+pub fn new_device(limits: DeviceLimits) -> Option<TestDevice> {
+    let alone = alone();
+    open(limits).map(|device| TestDevice { device, _alone: Some(alone) })
+}
+
+fn shared() -> Option<Arc<Device>> {
+    static SHARED: OnceLock<Option<Arc<Device>>> = OnceLock::new();
+    SHARED.get_or_init(|| open(DeviceLimits::default())).clone()
+}
+
+fn open(limits: DeviceLimits) -> Option<Arc<Device>> {
     match Device::open(&DeviceOptions { validate: true, limits, ..Default::default() }) {
         Ok(device) => Some(device),
         Err(error) if std::env::var_os("SURFEL_REQUIRE_GPU").is_some() => panic!("{error}"),
@@ -27,6 +53,29 @@ pub fn new_device(limits: DeviceLimits) -> Option<Arc<Device>> {
             None
         }
     }
+}
+
+/// While it is held, no other thread has devices of its own under validation.
+///
+/// The validation layers (1.3.239) find what they know of a device by a hash table that `vkCreateDevice` and `vkDestroyDevice` change without
+/// a lock: calls by other threads, of whatever device, may crash. The first instance of a process and its first device are not in that table,
+/// so the shared device is opened before all others.
+pub type Alone = Rc<MutexGuard<'static, ()>>;
+
+/// Waits until no other thread has devices of its own. A thread that has some may have more.
+pub fn alone() -> Alone {
+    static ALONE: Mutex<()> = Mutex::new(());
+    thread_local! {
+        static HELD: RefCell<Weak<MutexGuard<'static, ()>>> = const { RefCell::new(Weak::new()) };
+    }
+    shared();
+    HELD.with_borrow_mut(|held| {
+        held.upgrade().unwrap_or_else(|| {
+            let alone = Rc::new(ALONE.lock().unwrap_or_else(PoisonError::into_inner));
+            *held = Rc::downgrade(&alone);
+            alone
+        })
+    })
 }
 
 /// Fails on any message of the validation layers.
