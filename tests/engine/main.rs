@@ -29,6 +29,7 @@ mod hard;
 mod hostile;
 mod instances;
 mod levels;
+mod levels_in_motion;
 mod lines;
 mod materials;
 mod mesh_outlines;
