@@ -1,5 +1,6 @@
 //! Pictures after the passes that read the depths of shaded ones, against the reference's of the same colours and depths, or of exact ones.
 
+use crate::support::after_light::after_light;
 use crate::support::gpu::{Renderers, render};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_4;
@@ -8,7 +9,7 @@ use surfel::bench::subject::Subject;
 use surfel::geometry::{Camera, Surfels};
 use surfel::settings::methods::Method;
 use surfel::settings::{Cull, Edges, Shading};
-use surfel::verify::reference::{Projector, darkened, filtered, occluded};
+use surfel::verify::reference::Projector;
 use surfel::verify::scenes;
 use surfel::verify::truth;
 use surfel::vk::Device;
@@ -35,27 +36,6 @@ fn colours(picture: &Picture) -> Vec<[f64; 4]> {
     picture.colour.iter().map(|colour| colour.map(f64::from)).collect()
 }
 
-/// The reference's passes after shading, of colours and depths.
-fn expected(
-    projector: &Projector,
-    settings: &Settings,
-    colours: Vec<[f64; 4]>,
-    depths: &[f64],
-    size: [u32; 2],
-) -> Vec<[f64; 4]> {
-    let mut picture = colours;
-    if settings.occludes() {
-        picture = occluded(projector, &picture, depths, size);
-    }
-    if settings.shading == Shading::Edl {
-        picture = darkened(projector, &picture, depths, size);
-    }
-    if settings.filter_radius() > 0 {
-        picture = filtered(settings, &picture, size);
-    }
-    picture
-}
-
 /// Largest difference of premultiplied colours and α from the reference's passes after the picture without them.
 pub fn difference(
     renderers: &Renderers,
@@ -77,7 +57,7 @@ pub fn difference(
     let before = renderers.render(surfels, camera, &before, RenderOptions { outputs: DEPTHS, ..options });
     let depths: Vec<f64> = before.depth.as_ref().unwrap().iter().map(|z| f64::from(*z)).collect();
     let projector = Projector::new(camera, SIZE, settings).unwrap();
-    let expected = expected(&projector, settings, colours(&before), &depths, SIZE);
+    let expected = after_light(&projector, settings, colours(&before), &depths, SIZE);
     let after = renderers.render(surfels, camera, settings, options);
     assert!(after.depth.is_none(), "depths are of the passes alone, and not asked for");
     let premultiplied = |[r, g, b, a]: [f64; 4]| [a * r, a * g, a * b, a];
@@ -126,7 +106,7 @@ impl ExactDepths {
         let projector = Projector::new(&self.camera, self.size, &settings).unwrap();
         let albedo = settings.lighting.albedo.map(f64::from);
         let whole = vec![[albedo[0], albedo[1], albedo[2], 1.0]; self.depths.len()];
-        let expected = expected(&projector, &settings, whole, &self.depths, self.size);
+        let expected = after_light(&projector, &settings, whole, &self.depths, self.size);
         let inside = (0..self.depths.len()).filter(|i| self.depths[*i] > 0.0 && picture.colour[*i][3] == 1.0);
         let mut errors: Vec<f64> =
             inside.map(|i| (f64::from(picture.colour[i][0]) - expected[i][0]).abs() / albedo[0]).collect();

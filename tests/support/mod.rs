@@ -1,6 +1,7 @@
 //! What several integration tests share; none uses all of it.
 #![allow(dead_code)]
 
+pub mod after_light;
 pub mod gpu;
 pub mod layouts;
 pub mod matrix;
