@@ -290,6 +290,46 @@ pub static CULL_TILES_COMPUTE: Module = Module {
     push: size_of::<layout::Chunk>() as u32,
 };
 
+/// The vertex stage of `shaders-glsl/darken.glsl`.
+pub static DARKEN_VERTEX: Module = Module {
+    name: "darken_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("darken_vertex.spv"),
+    constants: &[],
+    resources: &[],
+    push: 0,
+};
+
+/// The fragment stage of `shaders-glsl/darken.glsl`.
+pub static DARKEN_FRAGMENT: Module = Module {
+    name: "darken_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("darken_fragment.spv"),
+    constants: &[],
+    resources: &[(&resource::PICTURE_IMAGE, false)],
+    push: size_of::<layout::Darken>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/distance.glsl`.
+pub static DISTANCE_COMPUTE: Module = Module {
+    name: "distance_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("distance_compute.spv"),
+    constants: &[0],
+    resources: &[(&resource::FRAME, false), (&resource::IMAGE_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::HOST_DEPTH_IMAGE, false)],
+    push: size_of::<layout::Distance>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/distance.glsl`.
+pub static DISTANCE_MULTISAMPLED_COMPUTE: Module = Module {
+    name: "distance_multisampled_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("distance_multisampled_compute.spv"),
+    constants: &[0, 43],
+    resources: &[(&resource::FRAME, false), (&resource::IMAGE_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::HOST_DEPTH_SAMPLES, false)],
+    push: size_of::<layout::Distance>() as u32,
+};
+
 /// The compute stage of `shaders-glsl/edl.glsl`.
 pub static EDL_COMPUTE: Module = Module {
     name: "edl_compute",
@@ -992,7 +1032,7 @@ pub mod constant {
     pub const HAS_LEVELS: u32 = 73;
     /// `HOST_DEPTH`, first in `shaders-glsl/composite.glsl`.
     pub const HOST_DEPTH: u32 = 40;
-    /// `HOST_SAMPLES`, first in `shaders-glsl/seed.glsl`.
+    /// `HOST_SAMPLES`, first in `shaders-glsl/distance.glsl`.
     pub const HOST_SAMPLES: u32 = 43;
     /// `IDS`, first in `shaders-glsl/copy.glsl`.
     pub const IDS: u32 = 39;
@@ -1635,6 +1675,24 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
     };
 
+    /// `host_depth_image`, first in `shaders-glsl/distance.glsl`.
+    pub static HOST_DEPTH_IMAGE: Resource = Resource {
+        name: "host_depth_image",
+        set: 2,
+        binding: 0,
+        kind: DescriptorType::SAMPLED_IMAGE,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `host_depth_samples`, first in `shaders-glsl/distance.glsl`.
+    pub static HOST_DEPTH_SAMPLES: Resource = Resource {
+        name: "host_depth_samples",
+        set: 2,
+        binding: 0,
+        kind: DescriptorType::SAMPLED_IMAGE,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
     /// `id_image`, first in `shaders-glsl/composite.glsl`.
     pub static ID_IMAGE: Resource = Resource {
         name: "id_image",
@@ -1931,6 +1989,38 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Counts, culled) == 0);
     const _: () = assert!(std::mem::offset_of!(Counts, in_clusters) == 24);
     const _: () = assert!(std::mem::size_of::<Counts>() == 28);
+
+    /// `Darken`, 8 bytes, first in `shaders-glsl/darken.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct Darken {
+        /// Byte 0.
+        pub origin: [i32; 2],
+    }
+    const _: () = assert!(std::mem::offset_of!(Darken, origin) == 0);
+    const _: () = assert!(std::mem::size_of::<Darken>() == 8);
+
+    /// `Distance`, 28 bytes, first in `shaders-glsl/distance.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct Distance {
+        /// Byte 0.
+        pub first: [f32; 2],
+        /// Byte 8.
+        pub by_distance: f32,
+        /// Byte 12.
+        pub farthest: f32,
+        /// Byte 16.
+        pub origin: [i32; 2],
+        /// Byte 24.
+        pub nearer: f32,
+    }
+    const _: () = assert!(std::mem::offset_of!(Distance, first) == 0);
+    const _: () = assert!(std::mem::offset_of!(Distance, by_distance) == 8);
+    const _: () = assert!(std::mem::offset_of!(Distance, farthest) == 12);
+    const _: () = assert!(std::mem::offset_of!(Distance, origin) == 16);
+    const _: () = assert!(std::mem::offset_of!(Distance, nearer) == 24);
+    const _: () = assert!(std::mem::size_of::<Distance>() == 28);
 
     /// `EdgeTiles`, 20 bytes, first in `shaders-glsl/behind.glsl`.
     #[repr(C)]

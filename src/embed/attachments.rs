@@ -17,11 +17,13 @@ pub(super) enum Purpose {
     Other,
     /// Depth.
     Depth,
+    /// Depth that shaders read after it is drawn.
+    SampledDepth,
     /// Stencil.
     Stencil,
 }
 
-/// Returns an error if `device` cannot draw `what` to attachments of this format and sample count.
+/// Returns an error if `device` cannot draw `what` to attachments of this format and sample count, or not sample depth.
 pub(super) fn check(
     device: &Device,
     what: &str,
@@ -41,19 +43,27 @@ pub(super) fn check(
         Purpose::Depth | Purpose::Stencil => {
             (Can::DEPTH_STENCIL_ATTACHMENT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)
         }
+        Purpose::SampledDepth => (
+            Can::DEPTH_STENCIL_ATTACHMENT | Can::SAMPLED_IMAGE,
+            vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT | vk::ImageUsageFlags::SAMPLED,
+        ),
     };
     let fits = match purpose {
         Purpose::Blended | Purpose::Replaced => !is_integer(format),
         Purpose::Ids => format == vk::Format::R32_UINT,
         Purpose::Other => true,
-        Purpose::Depth => has_depth(format),
+        Purpose::Depth | Purpose::SampledDepth => has_depth(format),
         Purpose::Stencil => has_stencil(format),
     };
     if !fits && purpose == Purpose::Ids {
         return Err(format!("{what} need R32_UINT, but the format is {format:?}").into());
     }
     if !fits || !device.format_features(format).contains(needed) {
-        return Err(format!("{name} cannot draw {what} to {format:?}").into());
+        return Err(match purpose {
+            Purpose::SampledDepth => format!("{name} cannot sample {what} of {format:?}"),
+            _ => format!("{name} cannot draw {what} to {format:?}"),
+        }
+        .into());
     }
     if samples.as_raw().count_ones() != 1 {
         return Err(format!(
@@ -72,6 +82,15 @@ pub(super) fn check(
         .into());
     }
     Ok(())
+}
+
+/// Step between adjacent depths of `format`, beyond float rounding.
+pub(super) fn depth_step(format: vk::Format) -> f64 {
+    match format {
+        vk::Format::D16_UNORM | vk::Format::D16_UNORM_S8_UINT => 1.0 / 65535.0,
+        vk::Format::X8_D24_UNORM_PACK32 | vk::Format::D24_UNORM_S8_UINT => 1.0 / 16_777_215.0,
+        _ => 0.0,
+    }
 }
 
 /// Sample counts as text.

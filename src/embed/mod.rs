@@ -10,6 +10,8 @@
 //! Surfels may also be in buffers of the host, for example written by its simulation in every frame:
 //! [`Scene::from_buffers`](crate::Scene::from_buffers) reads them in place. [`update`] writes new values to uploaded surfels.
 //!
+//! [`DepthShading`] darkens a host's picture, surfels and meshes alike, by its depth: eye-dome lighting and ambient occlusion.
+//!
 //! The engine never submits or waits: the host submits the recorded commands to one queue. The engine destroys its own objects once the
 //! frames in flight that may use them are over, and never destroys the host's.
 //!
@@ -84,6 +86,7 @@ mod attachments;
 mod buffers;
 mod composite;
 mod deferred_destruction;
+mod depth_shading;
 mod formats;
 pub mod native;
 #[cfg(feature = "window")]
@@ -99,6 +102,7 @@ pub use crate::vk::{
     MemoryError, MemoryRequest, MemorySource, QUEUE, Staging,
 };
 pub use buffers::{Buffers, READ_ACCESS, READ_STAGES, Radii, Values, update};
+pub use depth_shading::{DepthAttachment, DepthShading};
 #[cfg(feature = "window")]
 pub use offscreen_view::OffscreenView;
 pub use reports::Measured;
@@ -316,7 +320,7 @@ impl Renderer {
     ) -> Result<(Uniforms, PreparedDraw)> {
         self.pending = None;
         let placed = scenes.placed(&self.device)?;
-        let TargetView { area, size, camera, depth } = self.target_view(view)?;
+        let TargetView { area, size, camera, depth, .. } = self.target_view(view)?;
         self.frame.resize(size);
         let (uniforms, variant) =
             self.frame.prepare(&placed, &camera, &without_background(settings), false)?;

@@ -147,20 +147,29 @@ impl Target {
     /// # Safety
     /// The target describes the pass correctly.
     pub(super) unsafe fn composite(&self, device: &Arc<Device>, kind: CompositeKind) -> Result<Composite> {
+        // SAFETY: by the caller.
+        let within = unsafe { self.within(Blend::Over) };
+        Composite::new(device, kind, &within)
+    }
+
+    /// The pass, with this blending of the picture; normals and ids are replaced, and other colours masked.
+    ///
+    /// # Safety
+    /// The target describes the pass correctly.
+    pub(super) unsafe fn within(&self, picture: Blend) -> Within {
         let blend = |location: usize| match location as u32 {
-            location if location == self.picture => Some(Blend::Over),
+            location if location == self.picture => Some(picture),
             location if [self.normal, self.id].contains(&Some(location)) => Some(Blend::Replace),
             _ => None,
         };
         let colours: Vec<_> = (0..self.colours.len()).map(blend).collect();
         let formats = (&self.colours[..], self.depth.unwrap_or(vk::Format::UNDEFINED), self.stencil);
         // SAFETY: by the caller.
-        let within = unsafe {
+        unsafe {
             match self.pass {
                 Pass::Subpass { pass, subpass } => Within::subpass((pass, subpass), &colours, self.samples),
                 Pass::Rendering => Within::rendering(formats, &colours, self.samples),
             }
-        };
-        Composite::new(device, kind, &within)
+        }
     }
 }

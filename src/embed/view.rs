@@ -29,8 +29,15 @@ impl View {
         check_depths(self.viewport)?;
         let camera = self.upright();
         check_convention(reversed, &camera)?;
-        let depth = depths(&camera, self.viewport)?;
-        Ok(TargetView { area, size: [area.extent.width, area.extent.height], camera, depth })
+        let depth_coefficients = depth_coefficients(&camera, self.viewport)?;
+        let depth = depths(depth_coefficients, self.viewport);
+        Ok(TargetView {
+            area,
+            size: [area.extent.width, area.extent.height],
+            camera,
+            depth_coefficients,
+            depth,
+        })
     }
 
     /// The viewport as an area of a framebuffer of at most `most` px.
@@ -81,8 +88,26 @@ pub(super) struct TargetView {
     pub(super) size: [u32; 2],
     /// The camera, for rows of pixels from the top.
     pub(super) camera: Camera,
-    /// Parameters of the host's depth: see `host_depth` in `lib/host.glsl`.
+    /// The host's depth at distance z is the first number plus the second divided by z in perspective, or times z otherwise.
+    pub(super) depth_coefficients: [f64; 2],
+    /// The parameters of `host_depth` in `lib/host.glsl`.
     pub(super) depth: [f32; 4],
+}
+
+impl TargetView {
+    /// Returns an error if the area is not within the `attachments` of `size` px, which `call` sets.
+    pub(super) fn check_area(&self, attachments: &str, size: [u32; 2], call: &str) -> Result<()> {
+        let vk::Rect2D { offset, extent } = self.area;
+        let ends = [offset.x as u32 + extent.width, offset.y as u32 + extent.height];
+        let [width, height] = size;
+        if ends[0] <= width && ends[1] <= height {
+            return Ok(());
+        }
+        Err(Error::Usage(format!(
+            "the viewport ends at ({}, {}), but the {attachments} {width}x{height} px: call `{call}` with the framebuffer's size",
+            ends[0], ends[1]
+        )))
+    }
 }
 
 /// Validates the depth range of the viewport.
@@ -111,8 +136,8 @@ fn check_convention(reversed: Option<bool>, camera: &Camera) -> Result<()> {
     }
 }
 
-/// The parameters of `host_depth` in `lib/host.glsl`.
-fn depths(camera: &Camera, viewport: vk::Viewport) -> Result<[f32; 4]> {
+/// See [`TargetView::depth_coefficients`].
+fn depth_coefficients(camera: &Camera, viewport: vk::Viewport) -> Result<[f64; 2]> {
     let projection = camera.projection()?;
     let (z, w) = (camera.projection.row(2), camera.projection.row(3));
     let [first, by_distance] = if projection.perspective {
@@ -121,6 +146,12 @@ fn depths(camera: &Camera, viewport: vk::Viewport) -> Result<[f32; 4]> {
         [z.w / w.w, projection.forward * z.z / w.w]
     };
     let (low, range) = (f64::from(viewport.min_depth), f64::from(viewport.max_depth - viewport.min_depth));
+    Ok([low + range * first, range * by_distance])
+}
+
+/// The parameters of `host_depth` in `lib/host.glsl`.
+fn depths(coefficients: [f64; 2], viewport: vk::Viewport) -> [f32; 4] {
+    let [first, by_distance] = coefficients.map(|coefficient| coefficient as f32);
     let [least, greatest] = [viewport.min_depth, viewport.max_depth];
-    Ok([(low + range * first) as f32, (range * by_distance) as f32, least.min(greatest), least.max(greatest)])
+    [first, by_distance, least.min(greatest), least.max(greatest)]
 }

@@ -31,6 +31,11 @@ pub fn grid_over_pixels([width, height]: [u32; 2]) -> [u32; 3] {
     [width.div_ceil(PIXEL_GROUP[0]), height.div_ceil(PIXEL_GROUP[1]), 1]
 }
 
+/// Workgroups for an invocation per block of 2 × 2 pixels, and per corner of such blocks.
+pub fn grid_over_quads(size: [u32; 2]) -> [u32; 3] {
+    grid_over_pixels(size.map(|side| side / 2 + 1))
+}
+
 /// Columns and rows of pixels of a workgroup of `filter.glsl`: of its invocations' blocks.
 const BLOCK_GROUP: [u32; 2] = [16 * 4, 4 * 16];
 
@@ -200,8 +205,7 @@ impl PreparedPass {
                         enc.dispatch(pipeline, &sets, &(), grid_over_blocks(frame.targets.size));
                     }
                     (Domain::Quads, _) => {
-                        let corners = frame.targets.size.map(|side| side / 2 + 1);
-                        enc.dispatch(pipeline, &sets, &(), grid_over_pixels(corners));
+                        enc.dispatch(pipeline, &sets, &(), grid_over_quads(frame.targets.size));
                     }
                     _ => enc.dispatch(pipeline, &sets, &(), grid_over_pixels(frame.targets.size)),
                 }

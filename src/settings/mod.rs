@@ -163,6 +163,7 @@ impl Settings {
 
     /// The settings by which subpasses of a host draw: over the host's picture, without the filter of pixels, eye-dome lighting and ambient
     /// occlusion, which read neighbours, and without [`Cull::Auto`] and [`Edges::Mixed`], which need other passes before and after them.
+    /// [`DepthShading`](crate::embed::DepthShading) adds eye-dome lighting and ambient occlusion afterwards.
     pub fn in_subpasses(&self) -> Self {
         let cull = if self.cull == Cull::Auto { Cull::None } else { self.cull };
         let shading = if self.shading == Shading::Edl { Shading::Colour } else { self.shading };

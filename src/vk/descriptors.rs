@@ -26,6 +26,8 @@ pub enum Binding<'a> {
     Input(&'a Image),
     /// The host's depth as input attachment.
     HostDepth(HostDepth),
+    /// The host's depth as sampled image, in this layout.
+    SampledHostDepth(HostDepth, vk::ImageLayout),
 }
 
 impl<'a> Binding<'a> {
@@ -35,7 +37,7 @@ impl<'a> Binding<'a> {
     }
 }
 
-/// A host's depth as an input attachment.
+/// A host's depth attachment.
 #[derive(Clone, Copy, Debug)]
 pub struct HostDepth(vk::ImageView);
 
@@ -102,6 +104,9 @@ impl DescriptorSet {
                     let layout = vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL;
                     update(write.image_info(&image_info(view, layout)));
                 }
+                Binding::SampledHostDepth(HostDepth(view), layout) => {
+                    update(write.image_info(&image_info(view, layout)));
+                }
             }
         }
     }
@@ -113,7 +118,9 @@ impl Binding<'_> {
             Self::Uniform(..) => vk::DescriptorType::UNIFORM_BUFFER,
             Self::Storage(..) => vk::DescriptorType::STORAGE_BUFFER,
             Self::Texels(_) => vk::DescriptorType::UNIFORM_TEXEL_BUFFER,
-            Self::Sampled(_) | Self::Fetched(_) => vk::DescriptorType::SAMPLED_IMAGE,
+            Self::Sampled(_) | Self::Fetched(_) | Self::SampledHostDepth(..) => {
+                vk::DescriptorType::SAMPLED_IMAGE
+            }
             Self::Stored(_) => vk::DescriptorType::STORAGE_IMAGE,
             Self::Input(_) | Self::HostDepth(_) => vk::DescriptorType::INPUT_ATTACHMENT,
         }

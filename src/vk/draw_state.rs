@@ -43,6 +43,8 @@ pub enum Blend {
     Add,
     /// Premultiplied alpha: `source + (1 − α) target`.
     Over,
+    /// Colours of the target are multiplied by those of fragments; its α stays.
+    Multiply,
 }
 
 /// Fixed-function state of a draw pipeline.
@@ -145,16 +147,23 @@ impl DepthTest {
 
 impl Blend {
     pub(super) fn info(self) -> vk::PipelineColorBlendAttachmentState {
-        let below =
-            if self == Self::Over { vk::BlendFactor::ONE_MINUS_SRC_ALPHA } else { vk::BlendFactor::ONE };
+        use vk::BlendFactor as Factor;
+        // Factors of the source and of the target.
+        let (colour, alpha) = match self {
+            Self::Replace | Self::Add => ([Factor::ONE; 2], [Factor::ONE; 2]),
+            Self::Over => {
+                ([Factor::ONE, Factor::ONE_MINUS_SRC_ALPHA], [Factor::ONE, Factor::ONE_MINUS_SRC_ALPHA])
+            }
+            Self::Multiply => ([Factor::ZERO, Factor::SRC_COLOR], [Factor::ZERO, Factor::ONE]),
+        };
         vk::PipelineColorBlendAttachmentState::default()
             .color_write_mask(vk::ColorComponentFlags::RGBA)
             .blend_enable(self != Self::Replace)
-            .src_color_blend_factor(vk::BlendFactor::ONE)
-            .dst_color_blend_factor(below)
+            .src_color_blend_factor(colour[0])
+            .dst_color_blend_factor(colour[1])
             .color_blend_op(vk::BlendOp::ADD)
-            .src_alpha_blend_factor(vk::BlendFactor::ONE)
-            .dst_alpha_blend_factor(below)
+            .src_alpha_blend_factor(alpha[0])
+            .dst_alpha_blend_factor(alpha[1])
             .alpha_blend_op(vk::BlendOp::ADD)
     }
 }

@@ -7,6 +7,8 @@ mod call_depth;
 mod clusters;
 mod compare;
 mod composite;
+mod depth_shading;
+mod depth_shading_refused;
 mod fixture;
 #[path = "../../tools/hosts/host/mod.rs"]
 mod host;
@@ -34,6 +36,7 @@ use ash::vk;
 /// Types that hosts may share among threads, and move between them.
 const _: () = {
     const fn shared<T: Send + Sync>() {}
+    shared::<surfel::embed::DepthShading>();
     shared::<surfel::embed::Renderer>();
     shared::<surfel::embed::native::Renderer>();
     shared::<surfel::Scene>();

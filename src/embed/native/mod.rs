@@ -9,6 +9,8 @@
 //!
 //! `draw` advances from subpass to subpass: from the host's last one before to the engine's last one, in which the host may draw, too.
 //!
+//! Eye-dome lighting and ambient occlusion read neighbours: [`DepthShading`](super::DepthShading) adds them after the render pass.
+//!
 //! Supports the methods that draw splats. Methods that blend have the subpasses visibility, attribute and normalize; methods that show the
 //! nearest splat have nearest and normalize. The picture equals that of [`embed::Renderer`](super::Renderer) with
 //! [`Rasterizer::Draw`](crate::Rasterizer::Draw), bit for bit. With [`Depth::seed`], a seed subpass comes first: it moves the host's depth
@@ -357,9 +359,9 @@ impl Renderer {
         settings: &Settings,
     ) -> Result<(Uniforms, PushConstants, vk::Rect2D)> {
         let placed = scenes.placed(&self.device)?;
-        let TargetView { area, size, camera, depth } =
-            view.in_target(&self.device, self.plan.host.reversed)?;
-        let targets = self.targets_of(area)?;
+        let target_view = view.in_target(&self.device, self.plan.host.reversed)?;
+        let targets = self.targets_of(&target_view)?;
+        let TargetView { area, size, camera, depth, .. } = target_view;
         let settings = settings.in_subpasses();
         check_method(&settings)?;
         let mut frame = self.frame.describe(&placed, &camera, &settings, size)?;
@@ -378,20 +380,12 @@ impl Renderer {
         Ok((frame.uniforms, PushConstants { seed, host: layout::Subpass { depth } }, area))
     }
 
-    /// The attachments, if the area is within them.
-    fn targets_of(&self, area: vk::Rect2D) -> Result<Arc<Targets>> {
+    /// The attachments, if the view is within them.
+    fn targets_of(&self, view: &TargetView) -> Result<Arc<Targets>> {
         let Some(targets) = &self.targets else {
             return Err(Error::Usage("there are no attachments: call `resize` before `prepare`".into()));
         };
-        let ends = [area.offset.x as u32 + area.extent.width, area.offset.y as u32 + area.extent.height];
-        let [width, height] = targets.size;
-        if ends[0] <= width && ends[1] <= height {
-            Ok(targets.clone())
-        } else {
-            Err(Error::Usage(format!(
-                "the viewport ends at ({}, {}), but the attachments have {width}x{height} px: call `resize` with the framebuffer's size",
-                ends[0], ends[1]
-            )))
-        }
+        view.check_area("attachments have", targets.size, "resize")?;
+        Ok(targets.clone())
     }
 }

@@ -10,6 +10,7 @@
 //! (`lib/splat.glsl`). So the seed is moved four times as far. Where the plane extends further, in front of a surface of the host that is
 //! in front of the disc, the pixel shows the host.
 
+use crate::embed::attachments::depth_step;
 use crate::settings::Precision;
 use crate::vk::shaders::layout::{Frame, Seed};
 use ash::vk;
@@ -42,19 +43,10 @@ pub(super) fn seed(
     let behind = REACH * epsilon * if perspective { 1.0 / near } else { slope };
     let seed = Seed {
         key: [scale as f32, offset as f32],
-        resolution: (scale.abs() * step(format) + 2f64.powi(-20) * offset.abs()) as f32,
+        resolution: (scale.abs() * depth_step(format) + 2f64.powi(-20) * offset.abs()) as f32,
         rounding: rounding as f32,
         behind: behind as f32,
     };
     let values = [seed.key[0], seed.key[1], seed.resolution, seed.behind];
     values.iter().all(|value| value.is_finite()).then_some(seed)
-}
-
-/// Step between adjacent depths of `format`, beyond float rounding.
-fn step(format: vk::Format) -> f64 {
-    match format {
-        vk::Format::D16_UNORM | vk::Format::D16_UNORM_S8_UINT => 1.0 / 65535.0,
-        vk::Format::X8_D24_UNORM_PACK32 | vk::Format::D24_UNORM_S8_UINT => 1.0 / 16_777_215.0,
-        _ => 0.0,
-    }
 }

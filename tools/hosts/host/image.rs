@@ -3,6 +3,9 @@
 use super::{Host, Result};
 use ash::vk;
 
+/// Stages and accesses on one side of a barrier.
+pub type Scope = (vk::PipelineStageFlags, vk::AccessFlags);
+
 /// A colour or depth target with its memory and view.
 pub struct Target {
     pub image: vk::Image,
@@ -160,9 +163,22 @@ impl Target {
     /// Transitions the layout, after all earlier commands and before all later ones.
     pub fn transition(&self, host: &Host, cmd: vk::CommandBuffer, [from, to]: [vk::ImageLayout; 2]) {
         let all = vk::PipelineStageFlags::ALL_COMMANDS;
+        let written = vk::AccessFlags::MEMORY_WRITE;
+        let (before, after) = ((all, written), (all, vk::AccessFlags::MEMORY_READ | written));
+        self.barrier(host, cmd, [(before, from), (after, to)]);
+    }
+
+    /// Transitions the layout, after and before these stages and accesses.
+    pub fn barrier(
+        &self,
+        host: &Host,
+        cmd: vk::CommandBuffer,
+        [before, after]: [(Scope, vk::ImageLayout); 2],
+    ) {
+        let (((first, written), from), ((second, used), to)) = (before, after);
         let barrier = vk::ImageMemoryBarrier::default()
-            .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
-            .dst_access_mask(vk::AccessFlags::MEMORY_READ | vk::AccessFlags::MEMORY_WRITE)
+            .src_access_mask(written)
+            .dst_access_mask(used)
             .old_layout(from)
             .new_layout(to)
             .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
@@ -171,7 +187,7 @@ impl Target {
             .subresource_range(range(self.format));
         let none = vk::DependencyFlags::empty();
         // SAFETY: recorded outside a render pass.
-        unsafe { host.device.cmd_pipeline_barrier(cmd, all, all, none, &[], &[], &[barrier]) };
+        unsafe { host.device.cmd_pipeline_barrier(cmd, first, second, none, &[], &[], &[barrier]) };
     }
 
     /// Destroys the target, once the GPU has finished using it.

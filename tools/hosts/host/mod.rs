@@ -7,6 +7,7 @@ mod shader;
 
 pub mod arguments;
 pub mod composite;
+pub mod darkening;
 pub mod demo;
 #[cfg(feature = "viewer")]
 pub mod event_loop;

@@ -140,6 +140,11 @@ impl Native {
         Ok(native)
     }
 
+    /// Sets the colour before the mesh, at first transparent black.
+    pub fn clear_to(&mut self, colour: [f32; 4]) {
+        self.clears[0].color.float32 = colour;
+    }
+
     /// Changes the size; no frame is in flight.
     pub fn resize(&mut self, host: &Host, size: [u32; 2]) -> Result<()> {
         let framed = Framed::new(host, self.kind, self.pass, &mut self.renderer, size)?;
@@ -206,16 +211,23 @@ impl Native {
 
     /// The picture, `bytes` per pixel.
     pub fn picture(&self, host: &Host, bytes: usize) -> Result<Vec<u8>> {
-        self.framed.targets[self.picture_number()].read(host, bytes)
+        self.picture_target().read(host, bytes)
     }
 
     /// The image of the picture, a transfer source after the pass.
     pub fn image(&self) -> vk::Image {
-        self.framed.targets[self.picture_number()].image
+        self.picture_target().image
     }
 
-    fn picture_number(&self) -> usize {
-        self.kind.attachment_indices().resolved.unwrap_or(0) as usize
+    /// The single-sample picture, a transfer source after the pass.
+    pub fn picture_target(&self) -> &Target {
+        &self.framed.targets[self.kind.attachment_indices().resolved.unwrap_or(0) as usize]
+    }
+
+    /// The depth, a transfer source after the pass, and a view of its depth aspect.
+    pub fn depth(&self) -> Option<(&Target, vk::ImageView)> {
+        let number = self.kind.attachment_indices().depth?;
+        Some((&self.framed.targets[number as usize], self.framed.depth_view?))
     }
 
     /// The single-sample depths, `bytes` per pixel.
@@ -260,7 +272,7 @@ impl Framed {
         let input = if kind.seed || kind.around[1] { Usage::INPUT_ATTACHMENT } else { Usage::empty() };
         let target = |(format, samples)| {
             let usage = if Some(format) == kind.depth {
-                Usage::DEPTH_STENCIL_ATTACHMENT | input
+                Usage::DEPTH_STENCIL_ATTACHMENT | Usage::SAMPLED | input
             } else {
                 Usage::COLOR_ATTACHMENT
             };
