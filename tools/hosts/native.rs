@@ -1,12 +1,14 @@
 //! A host with the engine's passes among the subpasses of its render pass: `cargo run --example native -- FILE.png`, or in a window, `cargo
-//! run --example native`.
+//! run --example native`. With `--edl` or `--ao` a pass after it darkens the picture by the depth.
 #![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
 
 mod host;
 
 use ash::vk;
 use host::arguments::Arguments;
+use host::darkening::Darkening;
 use host::demo::Demo;
+use host::frame::Way;
 use host::mesh::Mesh;
 use host::models::Models;
 use host::native::{Kind, Native};
@@ -19,10 +21,11 @@ fn main() -> Result<()> {
     host::demo::run(Subpasses::new)
 }
 
-/// A render pass with a subpass of the mesh, those of the surfels, and one of fog.
+/// A render pass with a subpass of the mesh, those of the surfels, and one of fog; and a pass that darkens by depth, if it is wanted.
 struct Subpasses {
     models: Models,
     native: Native,
+    darkening: Option<Darkening>,
     mesh: Mesh,
     settings: Settings,
     size: [u32; 2],
@@ -44,8 +47,11 @@ impl Subpasses {
         };
         let planned = models.streams(host)?.map(|streams| (streams, &settings));
         let native = Native::new(host, &device, kind, SIZE, &planned)?;
+        let darkening = (arguments.edl || arguments.ao)
+            .then(|| Darkening::new(host, &device, &native, Way::Subpass))
+            .transpose()?;
         let mesh = Mesh::new(host, &sphere::ring(), native.mesh_target())?;
-        Ok(Self { models, native, mesh, settings, size: SIZE })
+        Ok(Self { models, native, darkening, mesh, settings, size: SIZE })
     }
 }
 
@@ -56,7 +62,8 @@ impl Demo for Subpasses {
 
     fn resize(&mut self, host: &Host, size: [u32; 2]) -> Result<()> {
         self.size = size;
-        self.native.resize(host, size)
+        self.native.resize(host, size)?;
+        self.darkening.as_mut().map_or(Ok(()), |darkening| darkening.resize(host, &self.native))
     }
 
     fn change(&mut self, _: &Host) -> Result<()> {
@@ -72,8 +79,10 @@ impl Demo for Subpasses {
         unsafe {
             self.native.renderer.prepare(cmd, &instance, &view, &self.settings)?;
             let lit = (&self.mesh, TO_LIGHT);
-            self.native.record(host, cmd, (Some(lit), &view), |surfels| surfels.draw(cmd), true)
+            self.native.record(host, cmd, (Some(lit), &view), |surfels| surfels.draw(cmd), true)?;
         }
+        let Some(darkening) = &mut self.darkening else { return Ok(()) };
+        darkening.record(host, cmd, &self.native, (&view, &self.settings))
     }
 
     fn image(&self) -> vk::Image {
@@ -86,6 +95,9 @@ impl Demo for Subpasses {
 
     fn destroy(self, host: &Host) {
         self.mesh.destroy(host);
+        if let Some(darkening) = self.darkening {
+            darkening.destroy(host);
+        }
         self.native.destroy(host);
     }
 }

@@ -3,6 +3,7 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 use surfel::Settings;
+use surfel::settings::Shading;
 use surfel::settings::methods::Method;
 
 /// Mode of a host.
@@ -30,10 +31,14 @@ pub struct Arguments {
     pub points: Option<u32>,
     /// Number of frames; the last one is the picture.
     pub frames: Option<u64>,
+    /// Eye-dome lighting.
+    pub edl: bool,
+    /// Ambient occlusion.
+    pub ao: bool,
 }
 
 const USAGE: &str = "give FILE.png, --window, --soak or --check; \
-    and --method NAME, --model FILE.ply, --points N, --frames N where they are wanted";
+    and --method NAME, --model FILE.ply, --points N, --frames N, --edl, --ao where they are wanted";
 
 impl Arguments {
     /// Parses the program's arguments; a window without any.
@@ -67,6 +72,14 @@ impl Arguments {
                     parsed.frames = Some(number(&name, &value()?)?);
                     continue;
                 }
+                "--edl" => {
+                    parsed.edl = true;
+                    continue;
+                }
+                "--ao" => {
+                    parsed.ao = true;
+                    continue;
+                }
                 option if option.starts_with('-') => return Err(format!("{option} is no option: {USAGE}")),
                 _ => Mode::Picture(argument.into()),
             };
@@ -79,7 +92,14 @@ impl Arguments {
 
     /// Render settings.
     pub fn settings(&self) -> Settings {
-        self.method.map_or_else(Settings::default, |method| method.settings())
+        let mut settings = self.method.map_or_else(Settings::default, |method| method.settings());
+        if self.edl {
+            settings.shading = Shading::Edl;
+        }
+        if self.ao {
+            settings.ao = Settings::DEFAULT_AO;
+        }
+        settings
     }
 }
 
