@@ -201,12 +201,13 @@ fn sources(estimated: &Estimated) -> String {
 }
 
 /// Describes the points that are left out.
-fn dropped(Dropped { position, transparent, filtered }: Dropped, estimated: &Estimated) -> String {
+fn dropped(Dropped { position, transparent, thinned, filtered }: Dropped, estimated: &Estimated) -> String {
     let Estimated { unused, outliers, .. } = *estimated;
-    let filtered = if filtered > 0 { format!(", {filtered} by the filter") } else { String::new() };
+    let by = |count: u64, what: &str| if count > 0 { format!(", {count} {what}") } else { String::new() };
+    let (thinned, filtered) = (by(thinned, "by thinning"), by(filtered, "by the filter"));
     format!(
         "left out: {position} without a finite position, {transparent} less than a tenth opaque, {unused} that no face uses, {outliers} \
-         outliers{filtered}\n"
+         outliers{thinned}{filtered}\n"
     )
 }
 

@@ -170,13 +170,13 @@ fn pass((name, ms): (&'static str, Statistics)) -> Value {
 
 /// Counts of points, each of which counts once: read = dropped + culled + drawn. Surfels of levels of detail count as points do.
 fn tally(loaded: &LoadedModel, counts: SplatCounts) -> Value {
-    let Dropped { position, transparent, filtered } = loaded.dropped;
+    let Dropped { position, transparent, thinned, filtered } = loaded.dropped;
     let SplatCounts { drawn, behind, eye_plane, back, outside, invalid, other_level } = counts;
     let Estimated { unused, outliers, .. } = loaded.estimated;
     json!({
         "read": loaded.read,
         "dropped": {
-            "position": position, "transparent": transparent, "filtered": filtered, "unused": unused, "outlier": outliers,
+            "position": position, "transparent": transparent, "thinned": thinned, "filtered": filtered, "unused": unused, "outlier": outliers,
         },
         "culled": {
             "behind": behind, "eye_plane": eye_plane, "back": back, "outside": outside, "invalid": invalid,

@@ -1,16 +1,23 @@
 //! Which points of a file are read.
 
+#[cfg(test)]
+mod tests;
+
 use super::declared::{Element, Kind};
 use super::source::Parsed;
 use crate::error::Cause;
+use std::num::NonZeroU64;
 
-/// Conditions that all points that are read meet.
+/// Conditions that all points that are read meet. Faces and lines of points that are left out are left out, too.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Filter {
     /// Classes, by the property `classification`; `None` for all.
     pub classes: Option<Vec<u8>>,
     /// Returns of a pulse, by `return_number` and `number_of_returns`; `None` for all.
     pub returns: Option<Returns>,
+    /// One point in this many, from the first: 0, N, 2 N, … of those in the file, whatever the other conditions; `None` for all. Faces, lines
+    /// and radii, which belong to all points, are left out then.
+    pub every: Option<NonZeroU64>,
 }
 
 /// Returns of the pulses of a lidar.
@@ -41,7 +48,17 @@ pub(super) const PROPERTIES: [&str; 3] = ["classification", "return_number", "nu
 impl Filter {
     /// Whether all points are read.
     pub fn is_none(&self) -> bool {
-        self.classes.is_none() && self.returns.is_none()
+        self.classes.is_none() && self.returns.is_none() && self.step() == 1
+    }
+
+    /// Distance of the points that are read, in points of the file.
+    pub(super) fn step(&self) -> u64 {
+        self.every.map_or(1, NonZeroU64::get)
+    }
+
+    /// Number of the first `count` points of a file that are read, whatever the other conditions.
+    pub(super) fn thinned(&self, count: u64) -> u64 {
+        count.div_ceil(self.step())
     }
 
     /// Which of the [`PROPERTIES`] are needed.

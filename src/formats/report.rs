@@ -91,14 +91,16 @@ pub struct Dropped {
     pub position: u64,
     /// A 3D Gaussian is less than a tenth opaque.
     pub transparent: u64,
-    /// The [`Filter`](super::Filter) does not keep it.
+    /// It is not one of those that [`Filter::every`](super::Filter::every) keeps.
+    pub thinned: u64,
+    /// Another condition of the [`Filter`](super::Filter) does not keep it.
     pub filtered: u64,
 }
 
 impl Dropped {
     /// Number of dropped vertices.
     pub fn total(&self) -> u64 {
-        self.position + self.transparent + self.filtered
+        self.position + self.transparent + self.thinned + self.filtered
     }
 }
 

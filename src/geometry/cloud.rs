@@ -69,11 +69,16 @@ impl Cloud {
         self.positions.len()
     }
 
-    /// The points [`spread`](Self::spread). Radii, ellipses, curvatures, clips, weights, triangles and lines are dropped, because they belong
-    /// to the denser points: larger discs reach other edges.
+    /// The points [`spread`](Self::spread), without triangles and lines, and without radii, ellipses, curvatures, clips and weights, because
+    /// these belong to the denser points.
     pub fn some(&self, count: usize) -> Self {
         let kept = self.spread(count);
-        let points = self.points(&kept);
+        self.points(&kept).without_sizes()
+    }
+
+    /// Some of many points, without the radii, ellipses, curvatures, clips, weights and tangents of all, because these belong to the denser
+    /// points: larger discs reach other edges.
+    pub(crate) fn without_sizes(self) -> Self {
         Self {
             radii: None,
             ellipses: None,
@@ -81,7 +86,7 @@ impl Cloud {
             clips: None,
             weights: None,
             tangents: None,
-            ..points
+            ..self
         }
     }
 

@@ -163,6 +163,7 @@ impl Load<'_> {
                 skipped.extend(report.skipped);
                 dropped.position += report.dropped.position;
                 dropped.transparent += report.dropped.transparent;
+                dropped.thinned += report.dropped.thinned;
                 dropped.filtered += report.dropped.filtered;
             }
             parts.push(part);
@@ -278,13 +279,21 @@ impl Load<'_> {
         let scalar = report.scalar.clone();
         let name = Path::new(input).display().to_string();
         warnings::log(&name, &report);
-        if report.dropped.filtered > 0 {
-            let Report { points, dropped, .. } = &report;
-            self.listener
-                .note(&format!("{name}: {} of {points} points left out by the filter", dropped.filtered));
-        }
+        self.note_filtered(&name, &report);
         let cloud = self.options.points.map(|points| cloud.some(points as usize)).unwrap_or(cloud);
         Ok((Part { name, cloud, draws_faces: false, up, scalar }, source, Some(report)))
+    }
+
+    /// Notes how many points of a file the filter leaves out.
+    fn note_filtered(&self, name: &str, report: &Report) {
+        let Report { points, dropped: Dropped { thinned, filtered, .. }, .. } = report;
+        if let (1.., Some(every)) = (thinned, self.options.filter.every) {
+            self.listener
+                .note(&format!("{name}: {thinned} of {points} points left out: one in {every} is read"));
+        }
+        if *filtered > 0 {
+            self.listener.note(&format!("{name}: {filtered} of {points} points left out by the filter"));
+        }
     }
 
     /// Whether attributes and indices of the points are read: means of several points have none.

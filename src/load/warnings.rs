@@ -4,7 +4,7 @@ use crate::formats::{Dropped, Faces, Lines, Report};
 
 /// Logs warnings about parts of a file that are left out or may be damaged.
 pub fn log(name: &str, report: &Report) {
-    let Dropped { position, transparent, .. } = report.dropped;
+    let Dropped { position, transparent, thinned, filtered } = report.dropped;
     for (count, why) in [(position, "have no finite position"), (transparent, "are less than a tenth opaque")]
     {
         if count > 0 {
@@ -29,19 +29,16 @@ pub fn log(name: &str, report: &Report) {
             report.materials_dropped
         );
     }
+    let unread = (thinned + filtered > 0).then_some("join points that are not read");
     let Faces { understood, skipped } = report.faces;
     if skipped > 0 {
-        log::warn!(
-            "{name}: {skipped} of {} faces have no three different corners that exist and are left out",
-            skipped + understood
-        );
+        let why = unread.unwrap_or("have no three different corners that exist");
+        log::warn!("{name}: {skipped} of {} faces {why} and are left out", skipped + understood);
     }
     let Lines { understood, skipped, .. } = report.lines;
     if skipped > 0 {
-        log::warn!(
-            "{name}: {skipped} of {} segments of lines have no two distinct ends that exist and are left out",
-            skipped + understood
-        );
+        let why = unread.unwrap_or("have no two distinct ends that exist");
+        log::warn!("{name}: {skipped} of {} segments of lines {why} and are left out", skipped + understood);
     }
     if let Some(cause) = &report.texture_missing {
         log::warn!("{name}: drawn without its texture: {cause}");

@@ -185,6 +185,23 @@ fn classes_and_returns_can_be_selected() {
 }
 
 #[test]
+fn one_point_in_n_can_be_read() {
+    let program = Program::new();
+    let run = |command: &str| program.run(&format!("{command} {}", sample("format7.laz")));
+    let rendered = run("render -o out.png --reference --size 16x16 --every 7 --class 0,7");
+    rendered.text();
+    for line in ["51 of 60 points left out: one in 7 is read", "7 of 60 points left out by the filter"] {
+        assert!(rendered.err.contains(line), "{}", rendered.err);
+    }
+    let info = run("info --every 7");
+    assert!(info.text().contains("\nsurfels: 9\n"), "{}", info.text());
+    assert!(info.text().contains("outliers, 51 by thinning\n"), "{}", info.text());
+    assert!(info.text().contains("radii: 9 from neighbours\n"), "{}", info.text());
+    assert!(run("convert -o a.ply --every 7").err.ends_with("a.ply: 9 surfels\n"));
+    assert!(run("info --every 0").error(2).contains('0'));
+}
+
+#[test]
 fn points_by_class_and_return_are_counted() {
     let program = Program::new();
     let run = program.run(&format!("info {}", sample("format7.laz")));

@@ -24,7 +24,7 @@ fn check_counts(counts: &Value) {
     assert_eq!(counts["drawn"], 1, "{counts}");
     assert_eq!(
         counts["dropped"],
-        serde_json::json!({ "position": 1, "transparent": 0, "filtered": 0, "unused": 0, "outlier": 0 })
+        serde_json::json!({ "position": 1, "transparent": 0, "thinned": 0, "filtered": 0, "unused": 0, "outlier": 0 })
     );
     let culled = serde_json::json!({ "behind": 1, "eye_plane": 1, "back": 1, "outside": 1, "invalid": 0, "other_level": 0 });
     assert_eq!(counts["culled"], culled);

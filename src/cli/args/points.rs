@@ -2,6 +2,7 @@
 
 use crate::cli::values::{ColourBy, choice, colour_by, positive};
 use clap::Args;
+use std::num::NonZeroU64;
 use std::path::PathBuf;
 use std::sync::Arc;
 use surfel::Result;
@@ -23,6 +24,9 @@ pub struct Points {
     /// Reads these returns of a lidar's pulses alone
     #[arg(long, value_name = "WHICH", value_parser = choice::<Returns>())]
     pub returns: Option<Returns>,
+    /// Reads one point in N alone, from the first of each file on; neither lines nor faces
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
+    pub every: Option<u64>,
     /// Names of the columns of text files, such as x,y,z,intensity [default: the file's first line, or by the numbers]
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub columns: Option<Vec<String>>,
@@ -63,7 +67,8 @@ pub struct Points {
 impl Points {
     /// Which points are read.
     pub fn filter(&self) -> Filter {
-        Filter { classes: self.class.clone(), returns: self.returns }
+        let every = self.every.and_then(NonZeroU64::new);
+        Filter { classes: self.class.clone(), returns: self.returns, every }
     }
 
     /// The options of the estimation.

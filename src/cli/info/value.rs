@@ -66,7 +66,7 @@ fn element(element: &Element) -> Value {
 
 /// Adds the entries of what was read.
 fn read(all: &mut Object, report: &Report, cloud: &Cloud) {
-    let Dropped { position, transparent, filtered } = report.dropped;
+    let Dropped { position, transparent, thinned, filtered } = report.dropped;
     let seen = match cloud.view {
         View::Unknown => Value::Null,
         View::From(eye) => json!({ "from": (cloud.origin + eye.as_dvec3()).to_array() }),
@@ -81,7 +81,7 @@ fn read(all: &mut Object, report: &Report, cloud: &Cloud) {
         "seen": seen,
         "faces": { "understood": report.faces.understood, "skipped": report.faces.skipped },
         "lines": { "understood": report.lines.understood, "skipped": report.lines.skipped, "sides_of_faces": report.lines.sides },
-        "left_out": { "without_position": position, "transparent": transparent, "filtered": filtered },
+        "left_out": { "without_position": position, "transparent": transparent, "thinned": thinned, "filtered": filtered },
         "trailing_bytes": report.trailing,
         "details": report.details.iter().cloned().collect::<std::collections::BTreeMap<_, _>>(),
     }) else {

@@ -114,7 +114,7 @@ fn load(
         },
     )?;
     meter.finish();
-    let mut points = Points::new(arrays, tally, None)?;
+    let mut points = Points::new(arrays, tally, &layout)?;
     let attributes = points.take_attributes(element, &layout);
     let system = file.coordinate_metadata().filter(|text| !text.is_empty()).map(str::to_owned);
     let report = Report {

@@ -165,7 +165,7 @@ impl<'a> Model<'a> {
             }
             meter.add(count as u64)
         })?;
-        Points::new(arrays, tally, None)
+        Points::new(arrays, tally, layout)
     }
 
     fn faces(&self, points: &Points, options: &ReadOptions) -> (Vec<[u32; 3]>, Faces) {

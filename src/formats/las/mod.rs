@@ -89,7 +89,7 @@ fn load(table: &read::Table, encoding: Encoding, progress: &dyn Progress) -> Par
     let meter = Meter::new(progress, table.source.size());
     let (arrays, tally) = table.read(&meter)?;
     meter.finish();
-    let mut points = Points::new(arrays, tally, table.layout.origin)?;
+    let mut points = Points::new(arrays, tally, table.layout)?;
     let attributes = points.take_attributes(table.element, table.layout);
     let report = Report {
         details: details::of(table.header),

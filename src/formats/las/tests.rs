@@ -272,13 +272,13 @@ fn classes_and_returns_are_selected() {
         cloud.scalar.unwrap().into_iter().map(|value| value as u64 / 3).collect::<Vec<_>>()
     };
     let expected = |is: fn(u64) -> bool| (0..COUNT).filter(|&i| is(i)).collect::<Vec<_>>();
-    let classes = |classes: &[u8]| Filter { classes: Some(classes.into()), returns: None };
-    let returns = |returns| Filter { classes: None, returns: Some(returns) };
+    let classes = |classes: &[u8]| Filter { classes: Some(classes.into()), ..Default::default() };
+    let returns = |returns| Filter { returns: Some(returns), ..Default::default() };
     assert_eq!(kept(Filter::default()), expected(|_| true));
     assert_eq!(kept(classes(&[2, 6])), expected(|i| [2, 6].contains(&(i % 32))));
     assert_eq!(kept(returns(Returns::First)), expected(|i| i % 5 == 0));
     assert_eq!(kept(returns(Returns::Last)), expected(|i| i % 5 == 4));
-    let both = Filter { classes: Some(vec![4, 5]), returns: Some(Returns::Last) };
+    let both = Filter { classes: Some(vec![4, 5]), returns: Some(Returns::Last), every: None };
     assert_eq!(kept(both), expected(|i| i % 32 == 4 && i % 5 == 4));
     let none = read(returns(Returns::Single)).unwrap_err().to_string();
     assert!(none.contains("none of its 60 points is left by the filter"), "{none}");

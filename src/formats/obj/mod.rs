@@ -107,7 +107,7 @@ impl File<'_> {
         let finish = |column: usize, values: &mut [f64]| vertices::finish(column, colour, values);
         let (arrays, tally) =
             rows::read(self.source, self.pieces, vertices::SYNTAX, &layout, finish, self.meter)?;
-        let mut points = Points::new(arrays, tally, None)?;
+        let mut points = Points::new(arrays, tally, &layout)?;
         let faces = self.read_others(&mut points)?;
         self.meter.finish();
         let used = [survey::VERTEX, survey::NORMAL, survey::FACE, survey::POINT];

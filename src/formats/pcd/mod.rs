@@ -73,7 +73,7 @@ fn load(
         _ => read_records(source, header, layout, meter),
     }?;
     meter.finish();
-    let mut points = Points::new(arrays, tally, None)?;
+    let mut points = Points::new(arrays, tally, layout)?;
     let attributes = points.take_attributes(element, layout);
     let details = vec![("version".to_owned(), header.version.clone())];
     let report = Report { details, ..Report::of_points(header.encoding, element, layout, &points) };

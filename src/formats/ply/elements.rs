@@ -119,7 +119,7 @@ impl File<'_> {
             walk(&mut reader, element, &vec![false; element.properties.len()], self.meter, |_, _| Ok(()))?;
         }
         let (arrays, tally) = points(&mut reader)?;
-        let mut points = Points::new(arrays, tally, None)?;
+        let mut points = Points::new(arrays, tally, self.layout)?;
         let needed = self.triangles || points.lacking;
         let mut others = Others::new(self.header.grid, self.meter, &points, needed || self.lines);
         let mut used = Vec::new();

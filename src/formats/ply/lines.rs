@@ -82,7 +82,7 @@ impl<'a> Segments<'a> {
     /// Adds a segment: a ribbon if both ends have normals, unless the file declares otherwise.
     fn add(&mut self, vertices: [f64; 2], tube: Option<bool>, declared: bool) {
         let cloud = &self.points.cloud;
-        let [a, b] = vertices.map(|vertex| self.points.of_vertex(vertex));
+        let [a, b] = vertices.map(|vertex| self.points.of_corner(vertex));
         let ends = a.zip(b).filter(|&(a, b)| cloud.positions[a as usize] != cloud.positions[b as usize]);
         let Some((a, b)) = ends else {
             self.lines.skipped += 1;

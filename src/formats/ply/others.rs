@@ -131,7 +131,7 @@ impl<'a> Others<'a> {
         let mut cells = Vec::new();
         self.lists(reader, element, list, |others, corners| {
             let cell = match corners {
-                [vertex] => others.points.of_vertex(*vertex),
+                [vertex] => others.points.of_corner(*vertex),
                 _ => None,
             };
             if cell.is_none() && !corners.is_empty() {

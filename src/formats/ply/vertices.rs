@@ -4,7 +4,7 @@ use super::Parsed;
 use super::records::{Reader, refuse_lie, walk};
 use crate::formats::declared::Element;
 use crate::formats::meter::Meter;
-use crate::formats::table::{Arrays, Block, Layout, ROWS, Tally, convert};
+use crate::formats::table::{Arrays, Block, Layout, ROWS, Tally, convert_next};
 
 /// Reads records sequentially. Validates the count first.
 pub(super) fn read_in_order<R: Reader>(
@@ -16,7 +16,7 @@ pub(super) fn read_in_order<R: Reader>(
     refuse_lie(vertex, R::least_size(vertex), reader.left())?;
     let mut arrays = Arrays::new(vertex.count, layout)?;
     let mut out = arrays.slices();
-    let (mut block, mut tally, mut rows) = (Block::new(layout), Tally::default(), 0);
+    let (mut block, mut tally, mut first, mut rows) = (Block::new(layout), Tally::default(), 0, 0);
     let fields = layout.used();
     let mut wanted = vec![false; vertex.properties.len()];
     fields.iter().for_each(|(_, index)| wanted[*index] = true);
@@ -27,12 +27,13 @@ pub(super) fn read_in_order<R: Reader>(
         }
         rows += 1;
         if rows == ROWS {
-            tally = tally.merge(convert(&block, layout, &mut out.split(ROWS)));
-            rows = 0;
+            tally = tally.merge(convert_next(&mut block, layout, first, &mut out));
+            block.set_rows(ROWS);
+            (first, rows) = (first + ROWS as u64, 0);
         }
         Ok(())
     })?;
     block.set_rows(rows);
-    tally = tally.merge(convert(&block, layout, &mut out.split(rows)));
+    tally = tally.merge(convert_next(&mut block, layout, first, &mut out));
     Ok((arrays, tally))
 }

@@ -90,7 +90,7 @@ fn load(
     let sizes = [element.count as usize, SIZE as usize];
     let tally = records.fill(&mut arrays, &layout, sizes, &fields(element, &layout), finish, &meter)?;
     meter.finish();
-    let mut points = Points::new(arrays, tally, None)?;
+    let mut points = Points::new(arrays, tally, &layout)?;
     let attributes = points.take_attributes(element, &layout);
     let report = Report::of_points(Encoding::BinaryLittleEndian, element, &layout, &points);
     Ok(Loaded { cloud: points.cloud, report, attributes })

@@ -113,7 +113,7 @@ fn load(
         meter.add((next - index * PIECE) as u64 * header.stride())
     })?;
     meter.finish();
-    let mut points = Points::new(arrays, tally, None)?;
+    let mut points = Points::new(arrays, tally, &layout)?;
     let attributes = points.take_attributes(element, &layout);
     let report = Report {
         details: header.details(),

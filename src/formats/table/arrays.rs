@@ -11,7 +11,7 @@ use glam::{DVec3, Vec2, Vec3};
 
 macro_rules! arrays {
     ($($name:ident: $type:ty, $there:expr, $what:literal;)*) => {
-        /// Arrays with one entry per vertex; empty for attributes that the file does not have.
+        /// Arrays with one entry per vertex that is read; empty for attributes that the file does not have.
         #[derive(Default)]
         pub struct Arrays {
             $(#[doc = $what] pub $name: Vec<$type>,)*
@@ -27,8 +27,10 @@ macro_rules! arrays {
         }
 
         impl Arrays {
-            /// Arrays of zeros. `count` is validated against the size of the file.
+            /// Arrays of zeros for the points of a file that the layout's filter keeps by their number. `count`, that of all points, is
+            /// validated against the size of the file.
             pub fn new(count: u64, layout: &Layout) -> Parsed<Self> {
+                let count = layout.filter.thinned(count);
                 let each = layout.attributes.iter().map(|(_, scalar)| scalar.size()).sum::<u64>()
                     $(+ if $there(layout) { size_of::<$type>() as u64 } else { 0 })*;
                 memory::check(&format!("its {count} points"), count.saturating_mul(each))?;

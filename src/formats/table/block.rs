@@ -39,6 +39,15 @@ impl Block {
         &mut self.values[column * ROWS..][..self.rows]
     }
 
+    /// Keeps the rows `first`, `first + step`, and so on.
+    pub fn thin(&mut self, first: usize, step: usize) {
+        let kept = self.rows.saturating_sub(first).div_ceil(step);
+        for column in self.values.chunks_exact_mut(ROWS) {
+            (0..kept).for_each(|row| column[row] = column[first + row * step]);
+        }
+        self.rows = kept;
+    }
+
     /// Writes rows of values: each column that is used with the index of its value.
     pub fn fill<const N: usize>(&mut self, used: &[(usize, usize)], rows: &[[f64; N]]) {
         for &(column, index) in used {

@@ -27,6 +27,7 @@ const HARMONIC: f64 = 0.282_094_791_773_878_14;
 pub struct Tally {
     pub dropped: u64,
     pub transparent: u64,
+    pub thinned: u64,
     pub filtered: u64,
     /// Invalid clip lines.
     pub clip_lines: u64,
@@ -41,6 +42,7 @@ impl Tally {
         Self {
             dropped: self.dropped + other.dropped,
             transparent: self.transparent + other.transparent,
+            thinned: self.thinned + other.thinned,
             filtered: self.filtered + other.filtered,
             clip_lines: self.clip_lines + other.clip_lines,
             weights: self.weights + other.weights,

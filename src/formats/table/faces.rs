@@ -20,7 +20,7 @@ impl<'a> Collector<'a> {
 
     /// Adds a polygon as a fan.
     pub fn face(&mut self, corners: &[f64]) {
-        let inside = corners.iter().all(|corner| self.points.of_vertex(*corner).is_some());
+        let inside = corners.iter().all(|corner| self.points.of_corner(*corner).is_some());
         let mut understood = false;
         if let (true, [first, rest @ ..]) = (inside, corners) {
             for pair in rest.windows(2) {
@@ -59,7 +59,7 @@ impl<'a> Collector<'a> {
 
     /// Adds a triangle if its corners are three different points; returns whether they are.
     fn triangle(&mut self, corners: [f64; 3]) -> bool {
-        let [Some(a), Some(b), Some(c)] = corners.map(|corner| self.points.of_vertex(corner)) else {
+        let [Some(a), Some(b), Some(c)] = corners.map(|corner| self.points.of_corner(corner)) else {
             return false;
         };
         let proper = a != b && b != c && c != a;

@@ -18,6 +18,8 @@ pub struct Rows<'a> {
     layout: &'a Layout,
     block: &'a mut Block,
     out: Slices<'a>,
+    /// Number of the next row in the table.
+    first: u64,
     left: usize,
     tally: Tally,
 }
@@ -32,10 +34,24 @@ impl Rows<'_> {
     pub fn next(&mut self, count: usize, fill: impl FnOnce(&mut Block)) {
         self.block.set_rows(count.min(self.left));
         fill(self.block);
-        self.left -= self.block.rows();
-        let tally = convert(self.block, self.layout, &mut self.out.split(self.block.rows()));
-        self.tally = self.tally.merge(tally);
+        let rows = self.block.rows();
+        self.left -= rows;
+        self.tally = self.tally.merge(convert_next(self.block, self.layout, self.first, &mut self.out));
+        self.first += rows as u64;
     }
+}
+
+/// Converts the rows of a block that the filter keeps by their number to the next entries of `out`; `first` is the number of the first row in
+/// the table.
+pub fn convert_next(block: &mut Block, layout: &Layout, first: u64, out: &mut Slices) -> Tally {
+    let (rows, step) = (block.rows(), layout.filter.step());
+    if step > 1 {
+        let next = layout.filter.thinned(first) * step - first;
+        // Beyond the rows of the block, whatever the distance is.
+        block.thin(next.min(ROWS as u64) as usize, step.min(ROWS as u64) as usize);
+    }
+    let tally = convert(block, layout, &mut out.split(block.rows()));
+    Tally { thinned: (rows - block.rows()) as u64, ..tally }
 }
 
 /// Fills the arrays in pieces of `sizes` rows, in parallel: `piece` gets its index and its rows, and scratch memory for each thread.
@@ -47,11 +63,17 @@ pub fn fill<S>(
     piece: impl Fn(&mut S, usize, &mut Rows) -> Parsed<()> + Sync + Send,
 ) -> Parsed<Tally> {
     let mut out = arrays.slices();
-    let pieces: Vec<(usize, usize, Slices)> =
-        sizes.enumerate().map(|(index, rows)| (index, rows, out.split(rows))).collect();
+    let mut next = 0;
+    let pieces = sizes.enumerate().map(|(index, rows)| {
+        let first = next;
+        next += rows as u64;
+        let [before, after] = [first, next].map(|row| layout.filter.thinned(row));
+        Piece { index, first, rows, out: out.split((after - before) as usize) }
+    });
+    let pieces: Vec<Piece> = pieces.collect();
     let scratch = || (Block::new(layout), scratch());
-    let run = |(block, scratch): &mut (Block, S), (index, left, out): (usize, usize, Slices)| {
-        let mut rows = Rows { layout, block, out, left, tally: Tally::default() };
+    let run = |(block, scratch): &mut (Block, S), Piece { index, first, rows: left, out }: Piece| {
+        let mut rows = Rows { layout, block, out, first, left, tally: Tally::default() };
         piece(scratch, index, &mut rows)?;
         Ok(rows.tally)
     };
@@ -62,6 +84,15 @@ pub fn fill<S>(
         pieces.into_iter().par_bridge().map_init(scratch, run).collect()
     };
     Ok(tallies?.into_iter().fold(Tally::default(), Tally::merge))
+}
+
+/// Consecutive rows of a table, and the entries of those that are kept.
+struct Piece<'a> {
+    index: usize,
+    /// Number of the first row in the table.
+    first: u64,
+    rows: usize,
+    out: Slices<'a>,
 }
 
 /// Binary records without lists.

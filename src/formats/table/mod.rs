@@ -18,9 +18,9 @@ pub mod text;
 
 pub use arrays::Arrays;
 pub use block::{Block, ROWS};
-pub use convert::{Tally, convert, linear};
+pub use convert::{Tally, linear};
 pub use faces::Collector;
-pub use fill::{Records, Rows, fields, fill};
+pub use fill::{Records, Rows, convert_next, fields, fill};
 pub use layout::{Layout, Shape, is_colour};
 pub use points::Points;
 pub use shape::unit;

@@ -30,8 +30,10 @@ pub struct Points {
     pub cloud: Cloud,
     pub dropped: Dropped,
     /// Number of vertices in the file.
-    pub count: u32,
-    /// Point index of each vertex, if some were dropped.
+    pub count: u64,
+    /// Distance of the vertices that are read.
+    step: u64,
+    /// Point index of each vertex that is read, if some were dropped.
     map: Option<Vec<u32>>,
     /// Whether some points need normals or radii from faces.
     pub lacking: bool,
@@ -51,25 +53,28 @@ pub struct Points {
 const NOWHERE: u32 = u32::MAX;
 
 impl Points {
-    /// The points of filled arrays; `origin` is that of their positions, if it is known already.
-    pub fn new(mut arrays: Arrays, tally: Tally, origin: Option<DVec3>) -> Parsed<Self> {
-        let count = arrays.narrow.len().max(arrays.wide.len());
-        let count = u32::try_from(count).map_err(|_| "more than 2³² − 1 points: split the file")?;
-        let Tally { dropped, transparent, filtered, .. } = tally;
-        let dropped = Dropped { position: dropped, transparent, filtered };
-        if dropped.total() >= u64::from(count) {
+    /// The points of arrays that were filled by the layout.
+    pub fn new(mut arrays: Arrays, tally: Tally, layout: &Layout) -> Parsed<Self> {
+        let read = arrays.narrow.len().max(arrays.wide.len());
+        let read = u32::try_from(read).map_err(|_| "more than 2³² − 1 points: split the file")?;
+        let Tally { dropped, transparent, thinned, filtered, .. } = tally;
+        let dropped = Dropped { position: dropped, transparent, thinned, filtered };
+        let count = u64::from(read) + thinned;
+        if dropped.total() >= count {
             return Err(nothing(count, dropped));
         }
-        let map = (dropped.total() > 0).then(|| leave_out(&mut arrays));
+        let map = (dropped.total() > thinned).then(|| leave_out(&mut arrays));
         let coordinates = std::mem::take(&mut arrays.coordinates);
         let materials = std::mem::take(&mut arrays.materials);
         let attributes = std::mem::take(&mut arrays.attributes);
-        let cloud = cloud(arrays, origin);
+        let cloud = cloud(arrays, layout.origin);
+        let step = layout.filter.step();
         let Tally { lacking, clip_lines, weights, .. } = tally;
         Ok(Self {
-            cloud,
+            cloud: if step > 1 { cloud.without_sizes() } else { cloud },
             dropped,
             count,
+            step,
             map,
             lacking,
             clip_lines,
@@ -92,20 +97,32 @@ impl Points {
     /// The point of a vertex; `None` if the vertex does not exist or was dropped.
     pub fn of_vertex(&self, vertex: f64) -> Option<u32> {
         // Only whole numbers survive the conversion and back.
-        let index = vertex as u32;
-        if f64::from(index) != vertex || index >= self.count {
+        let index = vertex as u64;
+        if index as f64 != vertex || index >= self.count || !index.is_multiple_of(self.step) {
             return None;
         }
+        let read = index / self.step;
         match &self.map {
-            None => Some(index),
-            Some(map) => Some(map[index as usize]).filter(|point| *point != NOWHERE),
+            None => u32::try_from(read).ok(),
+            Some(map) => Some(map[read as usize]).filter(|point| *point != NOWHERE),
         }
+    }
+
+    /// The point of a vertex that a face or a line joins to others; `None` for all if one point in several is read, which leaves only a few
+    /// faces and lines whole, here and there.
+    pub fn of_corner(&self, vertex: f64) -> Option<u32> {
+        if self.step > 1 { None } else { self.of_vertex(vertex) }
     }
 }
 
-fn nothing(count: u32, dropped: Dropped) -> Cause {
+fn nothing(count: u64, dropped: Dropped) -> Cause {
     if dropped.filtered > 0 {
         return format!("none of its {count} points is left by the filter: choose other classes or returns")
+            .into();
+    }
+    if dropped.thinned > 0 {
+        let read = count - dropped.thinned;
+        return format!("none of the {read} that are read of its {count} points is left: read more of them")
             .into();
     }
     match (count, dropped.transparent) {
@@ -118,7 +135,7 @@ fn nothing(count: u32, dropped: Dropped) -> Cause {
     }
 }
 
-/// Removes points without a position; returns the new index of each vertex.
+/// Removes points without a position; returns the new index of each vertex that is read.
 fn leave_out(arrays: &mut Arrays) -> Vec<u32> {
     let kept: Vec<bool> = if arrays.wide.is_empty() {
         arrays.narrow.iter().map(|position| position.is_finite()).collect()

@@ -83,7 +83,7 @@ fn load(
     };
     let (arrays, tally) = rows::read(source, pieces, Syntax::table(columns.len()), &layout, finish, meter)?;
     meter.finish();
-    let mut points = Points::new(arrays, tally, None)?;
+    let mut points = Points::new(arrays, tally, &layout)?;
     let attributes = points.take_attributes(element, &layout);
     let report = Report::of_points(Encoding::Ascii, element, &layout, &points);
     Ok(Loaded { cloud: points.cloud, report, attributes })

@@ -379,7 +379,7 @@ fn a_faint_gaussian_that_the_filter_leaves_out_counts_once() {
     let record =
         |opacity: i32, class: i32| format!("{class} {opacity} 0  {opacity} 2 0 -1 1 0 0 0 {class}\n");
     let records = record(9, 2) + &record(-9, 2) + &record(9, 3) + &record(-9, 3);
-    let filter = crate::formats::Filter { classes: Some(vec![2]), returns: None };
+    let filter = crate::formats::Filter { classes: Some(vec![2]), ..Default::default() };
     let options = ReadOptions { filter, ..Default::default() };
     let Loaded { cloud, report, .. } = read_bytes("a.ply", &text(&lines, &records), &options).unwrap();
     assert_eq!(report.dropped, Dropped { transparent: 1, filtered: 2, ..Default::default() });

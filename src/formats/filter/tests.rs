@@ -1,0 +1,144 @@
+use super::*;
+use crate::formats::round_trip::all;
+use crate::formats::table::{Arrays, Layout};
+use crate::formats::{Dropped, Faces, Loaded, ReadOptions, read_bytes};
+use std::fmt::Write;
+
+/// Options that keep all attributes of one point in `every`.
+fn one_in(every: u64) -> ReadOptions {
+    ReadOptions { filter: Filter { every: NonZeroU64::new(every), ..Default::default() }, ..all() }
+}
+
+/// A sample file by its name.
+fn sample(name: &str) -> (String, Vec<u8>) {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/formats/");
+    (name.into(), std::fs::read(format!("{folder}{name}")).unwrap())
+}
+
+/// Lines of `count` points, each of which tells its number.
+fn lines(count: usize, start: &str, end: &str) -> String {
+    (0..count).fold(String::new(), |mut text, i| {
+        let _ = writeln!(text, "{start}{i} {} {}{end}", i * 7 % 11, i * 5 % 13);
+        text
+    })
+}
+
+/// A PLY file with this encoding, and this property after x y z.
+fn header(encoding: &str, count: usize, property: &str) -> String {
+    let xyz = "property float x\nproperty float y\nproperty float z";
+    format!("ply\nformat {encoding} 1.0\nelement vertex {count}\n{xyz}\n{property}end_header\n")
+}
+
+/// Files of several blocks and pieces, by name.
+fn files() -> Vec<(String, Vec<u8>)> {
+    let binary = (0..30_000).flat_map(|i| [i as f32, (i % 11) as f32, 1.0]).flat_map(f32::to_be_bytes);
+    let gaussian = |i: u32| {
+        let floats = [i as f32, (i % 11) as f32, 1.0, 1.0, 2.0, 0.1].map(f32::to_le_bytes);
+        [floats.concat(), vec![9, 8, 7, 255, 255, 128, 128, 128]].concat()
+    };
+    let grid = "25\n52\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+    let text = |name: &str, text: String| (name.to_owned(), text.into_bytes());
+    vec![
+        text("a.xyz", lines(1300, "", "")),
+        text("a.ptx", format!("{grid}{}", lines(1300, "1", " 0.5"))),
+        text("a.obj", lines(1300, "v ", "")),
+        text("ascii.ply", header("ascii", 1300, "") + &lines(1300, "", "")),
+        text("lists.ply", header("ascii", 1300, "property list uchar int a\n") + &lines(1300, "", " 1 2")),
+        (
+            "binary.ply".into(),
+            [header("binary_big_endian", 30_000, "").into_bytes(), binary.collect()].concat(),
+        ),
+        ("a.splat".into(), (0..1300).flat_map(gaussian).collect()),
+        #[cfg(feature = "las")]
+        sample("format7.las"),
+        #[cfg(feature = "las")]
+        sample("format7.laz"),
+        #[cfg(feature = "pcd")]
+        sample("binary.pcd"),
+    ]
+}
+
+#[test]
+fn numbers_of_points_are_those_from_the_first_on() {
+    let thinned = |every, count| one_in(every).filter.thinned(count);
+    assert_eq!([0, 1, 3, 4, 7].map(|count| thinned(3, count)), [0, 1, 1, 2, 3]);
+    assert_eq!([0, 1, 3].map(|count| thinned(1, count)), [0, 1, 3]);
+    assert_eq!(thinned(u64::MAX, u64::MAX), 1);
+    assert!(one_in(1).filter.is_none() && !one_in(2).filter.is_none());
+}
+
+#[test]
+fn every_reader_reads_one_point_in_n() {
+    for (name, bytes) in files() {
+        let read = |options: &ReadOptions| read_bytes(&name, &bytes, options).unwrap();
+        let whole = read(&all());
+        assert_eq!(whole.report.dropped, Dropped::default(), "{name}");
+        for every in [1, 7, 600, u64::MAX] {
+            let Loaded { cloud, report, attributes } = read(&one_in(every));
+            let indices: Vec<usize> =
+                (0..whole.cloud.len()).filter(|i| (*i as u64).is_multiple_of(every)).collect();
+            assert_eq!((cloud.len(), report.points), (indices.len(), whole.report.points), "{name}");
+            let thinned = (whole.cloud.len() - cloud.len()) as u64;
+            assert_eq!(report.dropped, Dropped { thinned, ..Default::default() }, "{name}");
+            for (of_all, own) in whole.attributes.iter().zip(&attributes) {
+                let expected = indices.iter().map(|&i| of_all.values.get(i).map(f64::to_bits));
+                let values = (0..cloud.len()).map(|i| own.values.get(i).map(f64::to_bits));
+                assert!(values.eq(expected), "{name}: {} of one in {every}", own.name);
+            }
+            assert!(whole.attributes.len() >= 3 && whole.attributes.len() == attributes.len(), "{name}");
+        }
+    }
+}
+
+/// The points of two scans count on, those without a position too.
+#[cfg(feature = "e57")]
+#[test]
+fn one_point_in_n_of_all_scans_is_read() {
+    let (name, bytes) = sample("scans.e57");
+    let read = |options: &ReadOptions| read_bytes(&name, &bytes, options).unwrap();
+    let rows = |loaded: &Loaded| -> Vec<Vec<u64>> {
+        let of = |i| loaded.attributes.iter().map(|own| own.values.get(i).unwrap().to_bits()).collect();
+        (0..loaded.cloud.len()).map(of).collect()
+    };
+    let (whole, thinned) = (rows(&read(&all())), read(&one_in(3)));
+    let (points, dropped) = (thinned.report.points, thinned.report.dropped);
+    assert_eq!(dropped.thinned, points - points.div_ceil(3));
+    assert_eq!(thinned.cloud.len() as u64, points.div_ceil(3) - dropped.position);
+    // In file order.
+    let mut others = whole.iter();
+    assert!(rows(&thinned).iter().all(|row| others.any(|other| other == row)));
+}
+
+#[test]
+fn other_conditions_hold_for_the_points_that_are_left() {
+    let text = "//x y z classification\n0 0 0 2\n1 0 0 2\n2 0 0 5\n3 0 0 5\nnan 0 0 2\n5 0 0 2\n6 0 0 2\n";
+    let mut options = one_in(2);
+    options.filter.classes = Some(vec![2]);
+    let Loaded { cloud, report, .. } = read_bytes("a.xyz", text.as_bytes(), &options).unwrap();
+    assert_eq!(cloud.positions.iter().map(|position| position.x).collect::<Vec<_>>(), [0.0, 6.0]);
+    assert_eq!(report.dropped, Dropped { position: 1, thinned: 3, filtered: 1, ..Default::default() });
+    let none = read_bytes("a.xyz", b"nan 0 0\n1 2 3\n", &one_in(2)).unwrap_err().to_string();
+    assert!(none.contains("none of the 1 that are read of its 2 points is left"), "{none}");
+}
+
+#[test]
+fn faces_and_radii_belong_to_all_points() {
+    let faces = "element face 2\nproperty list uchar int vertex_indices\n";
+    let radius = "property float radius\n";
+    let ply = header("ascii", 5, &format!("{radius}{faces}"));
+    let ply = format!("{ply}0 0 0 1\n1 0 0 1\n2 0 0 1\n3 1 0 1\n4 4 0 1\n3 0 2 4\n3 0 1 2\n");
+    let read = |options: &ReadOptions| read_bytes("a.ply", ply.as_bytes(), options).unwrap();
+    let Loaded { cloud, report, .. } = read(&all());
+    assert_eq!((cloud.radii, report.faces), (Some(vec![1.0; 5]), Faces { understood: 2, skipped: 0 }));
+    let Loaded { cloud, report, .. } = read(&one_in(2));
+    assert_eq!((cloud.len(), cloud.triangles.len(), cloud.radii), (3, 0, None));
+    assert_eq!(report.faces, Faces { understood: 0, skipped: 2 });
+}
+
+#[test]
+fn memory_is_that_of_the_points_that_are_left() {
+    let Loaded { report, .. } = read_bytes("a.xyz", b"1 2 3\n", &all()).unwrap();
+    let layout = Layout::of(&report.elements[0], &one_in(1 << 30), false).unwrap();
+    let arrays = Arrays::new(1 << 40, &layout).unwrap();
+    assert_eq!(arrays.wide.len() + arrays.narrow.len(), 1 << 10);
+}
