@@ -207,7 +207,7 @@ uint footprint(uint i, out Splat splat) {
     vec3 S = sigma * to_pixel(disc.axes[0]);
     vec3 T = sigma * to_pixel(disc.axes[1]);
     float w = disc.w.x / frame.cutoff;
-    if (!(clearance(disc, S, T) > LEAST_CLEARANCE * w * w)) return EYE_PLANE;
+    if (FOOTPRINT != POINT && !(clearance(disc, S, T) > LEAST_CLEARANCE * w * w)) return EYE_PLANE;
     if (CULL_BACK && disc.facing.x >= 0.0 && !is_two_sided(i)) return BACK;
 
     disc.x = pixel_row(0, disc.hi, disc.lo);
@@ -231,7 +231,7 @@ uint footprint(uint i, out Splat splat) {
     float epsilon = MOVED ? 0.0 : frame.epsilon * disc.radius;
     splat.epsilon = PERSPECTIVE ? disc.w.x / (disc.w.x + epsilon) : view.key_slope * epsilon;
     if (disc.facing.x > 0.0) splat.epsilon = -splat.epsilon;
-    bool tangent = !is_sprite() && FOOTPRINT != SQUARE;
+    bool tangent = !is_sprite() && FOOTPRINT != SQUARE && FOOTPRINT != POINT;
     mat2x3 plane = tangent ? depth_plane(disc.normal, disc.h, disc.facing, anchor) : flat_plane(disc, image.slope, to_centre);
     splat.plane_hi = plane[0];
     splat.plane_lo = plane[1];

@@ -2,7 +2,8 @@
 
 layout(constant_id = 15) const uint FOOTPRINT = 0;        // as in src/settings/splatting.rs
 
-const uint CONIC = 0, AFFINE = 1, PARALLELOGRAM = 2, DISC = 3, SPRITE = 4, WHOLE_SPRITE = 5, SQUARE = 6, FLAT_SPRITE = 7;
+const uint CONIC = 0, AFFINE = 1, PARALLELOGRAM = 2, DISC = 3, SPRITE = 4, WHOLE_SPRITE = 5, SQUARE = 6, FLAT_SPRITE = 7,
+           POINT = 8;
 
 // Whether the kernel lies in the tangent plane.
 bool on_plane() {

@@ -131,7 +131,16 @@ Image image_of_square(Disc disc, float sigma) {
     return Image(Conic(vec2(0.0), axis, variance, vec2(0.0), 0.0), size.x * size.y, 0.0, vec2(0.0));
 }
 
+// Variance of a point, px²: its size is that of the low-pass filter, beside which it vanishes.
+const float POINT_VARIANCE = 1e-12;
+
+// Image of a point of a fixed size, whatever its disc.
+Image image_of_point() {
+    return Image(Conic(vec2(0.0), vec2(1.0, 0.0), vec2(POINT_VARIANCE), vec2(0.0), 0.0), POINT_VARIANCE, 0.0, vec2(0.0));
+}
+
 Image image_of(Disc disc, float sigma, vec3 S, vec3 T) {
+    if (FOOTPRINT == POINT) return image_of_point();
     if (FOOTPRINT == SQUARE) return image_of_square(disc, sigma);
     if (is_sprite()) return image_of_sprite(disc, sigma);
     return image_of_disc(disc, sigma, S, T);

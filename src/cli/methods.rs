@@ -20,10 +20,10 @@ pub fn run(args: &args::Methods) -> Result<()> {
         return print(&needs::table());
     }
     if args.json {
-        return print_json(&Method::ALL.iter().map(value).collect());
+        return print_json(&Method::CHOICES.iter().map(value).collect());
     }
     let mut text = String::from("bytes are per pixel, for a lit frame of coloured circles\n");
-    Method::ALL.iter().for_each(|method| describe(&mut text, method));
+    Method::CHOICES.iter().for_each(|method| describe(&mut text, method));
     print(&text)
 }
 

@@ -5,11 +5,12 @@ use super::report::{Gpu, HalfError, Report};
 use super::{camera, files, progress, reference, summary, turntable, vulkan};
 use std::path::Path;
 use surfel::embed::Measured;
+use surfel::estimate::Estimate;
 use surfel::formats::colour_bar::ColourBar;
 use surfel::formats::image::{Encoded, Output, write};
 use surfel::frame::times::Times;
 use surfel::geometry::{Camera, Extent, Levels, Model, Parts};
-use surfel::load::{Coloured, Colouring, LoadOptions, Uncoloured, load};
+use surfel::load::{Coloured, Colouring, LoadOptions, SuggestedShading, Uncoloured, load};
 use surfel::settings::Shading;
 use surfel::settings::methods::{Method, pull_push};
 use surfel::{Error, Outputs, Picture, Progress, Result, Settings, SplatCounts};
@@ -54,7 +55,9 @@ pub struct Outcome {
 pub fn run(args: &Render) -> Result<()> {
     let out = turntable::first(args)?;
     check_outputs(args, &out)?;
-    args.settings(&args.method.unwrap_or(Method::ALL[0])).check()?;
+    let asked = args.method()?;
+    let first = args.settings(&asked.unwrap_or(Method::ALL[0]));
+    first.check()?;
     let device = vulkan::options(&args.backend.device)?;
     let file = camera::read(&args.camera)?;
     let colouring = args.colours.colouring()?;
@@ -63,7 +66,7 @@ pub fn run(args: &Render) -> Result<()> {
     let options = LoadOptions {
         columns: args.points.columns.clone(),
         filter: args.points.filter(),
-        estimate: args.points.estimate(),
+        estimate: Estimate { bare: first.draws_points(), ..args.points.estimate() },
         polygons: args.points.polygons,
         points: args.points.points,
         colouring,
@@ -73,10 +76,11 @@ pub fn run(args: &Render) -> Result<()> {
         ..Default::default()
     };
     let mut loaded = load(&args.inputs, &options, &*bars)?;
-    let method = method(args.method, &loaded.model)?;
+    let method = method(asked, &loaded.model)?;
     let [shading_given, ao_given] = args.render_settings.chosen_shading();
     let settings = args.settings(&method);
-    let suggested = loaded.shading();
+    let points = settings.draws_points();
+    let suggested = if points { SuggestedShading::POINTS } else { loaded.shading() };
     let settings = Settings {
         shading: if shading_given { settings.shading } else { suggested.shading },
         ao: if ao_given { settings.ao } else { suggested.ao },
@@ -88,8 +92,8 @@ pub fn run(args: &Render) -> Result<()> {
         let input = args.inputs.first().map_or(Path::new(""), Path::new);
         let given = summary::Given {
             up: camera::up(&args.camera, file).is_some(),
-            shading: shading_given,
-            ao: ao_given,
+            shading: shading_given || points,
+            ao: ao_given || points,
         };
         summary::assumptions(input, given, &loaded).iter().for_each(|line| progress::say(line));
     }

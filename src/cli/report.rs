@@ -120,6 +120,7 @@ fn settings(settings: &Settings) -> Value {
         lowpass,
         pixel_filter,
         widen,
+        point_size,
         lod,
         max_points,
         epsilon,
@@ -142,7 +143,7 @@ fn settings(settings: &Settings) -> Value {
     json!({
         "footprint": footprint.name(), "kernel": kernel.to_string(), "filter": filter.name(),
         "visibility": visibility.name(), "normalization": normalization.name(), "shade": shade.name(),
-        "cutoff": cutoff, "lowpass": lowpass, "pixel_filter": pixel_filter, "widen": widen.name(), "lod": lod, "max_points": max_points, "epsilon": epsilon, "cull": cull.name(),
+        "cutoff": cutoff, "lowpass": lowpass, "pixel_filter": pixel_filter, "widen": widen.name(), "point_size": point_size, "lod": lod, "max_points": max_points, "epsilon": epsilon, "cull": cull.name(),
         "alpha": alpha.name(), "edges": edges.name(), "shading": shading.name(), "edl": edl, "ao": ao,
         "background": background, "lighting": light(lighting),
     })

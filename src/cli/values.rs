@@ -124,7 +124,7 @@ pub fn opaque(text: &str) -> Result<[f32; 3], String> {
 
 /// Parses a method by its name.
 pub fn method() -> impl TypedValueParser<Value = Method> {
-    let presets = Method::ALL.map(|method| PossibleValue::new(method.name).help(method.paper));
+    let presets = Method::CHOICES.map(|method| PossibleValue::new(method.name).help(method.paper));
     PossibleValuesParser::new(presets).map(|name| Method::named(&name).unwrap_or(Method::ALL[0]))
 }
 

@@ -13,14 +13,17 @@ use std::sync::Arc;
 use std::time::Instant;
 use surfel::estimate::Estimate;
 use surfel::geometry::{Colours, Extent, Model};
-use surfel::load::{Colouring, Listener, LoadOptions, Preview, Suggestion, Uncoloured, load, scene};
+use surfel::load::{
+    Colouring, Listener, LoadOptions, Preview, SuggestedShading, Suggestion, Uncoloured, load, scene,
+};
 use surfel::settings::methods::Method;
 use surfel::{Error, Progress, Result};
 
 /// Opens the window, which loads the inputs in the background.
 pub fn run(args: View) -> Result<()> {
     let start = Instant::now();
-    args.settings(&args.method.unwrap_or(Method::ALL[0])).check()?;
+    let method = args.method()?;
+    args.settings(&method.unwrap_or(Method::ALL[0])).check()?;
     if !(args.frame_budget > 0.0 && args.frame_budget.is_finite()) {
         return Err(Error::Usage(format!(
             "--frame-budget is {} ms: give a number above 0",
@@ -51,18 +54,18 @@ pub fn run(args: View) -> Result<()> {
             print_names: !(args.quiet || args.json),
         },
         settings_file: config_folder().filter(|_| !args.fresh).map(|folder| folder.join("viewer.json")),
-        method_chosen: args.method.is_some()
-            || Method::ALL.iter().any(|method| args.settings(method) != method.settings()),
+        method_chosen: method.is_some()
+            || Method::CHOICES.iter().any(|method| args.settings(method) != method.settings()),
     };
     viewer::run(
         options,
-        loader(&args, camera::up(&args.camera, file))?,
+        loader(&args, method, camera::up(&args.camera, file))?,
         Box::new(move |method| args.settings(method)),
     )
 }
 
 /// The function that loads inputs with the options of the arguments.
-fn loader(args: &View, up: Option<DVec3>) -> Result<viewer::Load> {
+fn loader(args: &View, method: Option<Method>, up: Option<DVec3>) -> Result<viewer::Load> {
     // Errors of the options are reported before the window opens.
     args.colours.colouring()?;
     let colour_by = args.colours.by().map(|by| viewer::ColourBy {
@@ -70,10 +73,11 @@ fn loader(args: &View, up: Option<DVec3>) -> Result<viewer::Load> {
         map: args.colours.color_map,
         range: by.range,
     });
+    let points = method.is_some_and(|method| args.settings(&method).draws_points());
     let options = LoadOptions {
         columns: args.points.columns.clone(),
         filter: args.points.filter(),
-        estimate: args.points.estimate(),
+        estimate: Estimate { bare: points, ..args.points.estimate() },
         polygons: args.points.polygons,
         points: args.points.points,
         uncoloured: args.colours.uncoloured(Uncoloured::Suggest),
@@ -82,7 +86,7 @@ fn loader(args: &View, up: Option<DVec3>) -> Result<viewer::Load> {
         ..Default::default()
     };
     let reader = Reader { options, quiet: args.quiet };
-    let (method, [shading_given, ao_given]) = (args.method, args.render_settings.chosen_shading());
+    let [shading_given, ao_given] = args.render_settings.chosen_shading();
     // The triangles belong to the inputs of the command, not to files that are opened later.
     let (truth, own) = (args.truth.clone(), args.inputs.clone());
     Ok(Arc::new(move |names: &[OsString], window: &dyn viewer::LoadListener| {
@@ -98,7 +102,7 @@ fn loader(args: &View, up: Option<DVec3>) -> Result<viewer::Load> {
         let inputs = load(names, &reader.options, &listener)?;
         let truth = truth.as_deref().filter(|_| *names == own);
         let surface = surface::of_inputs(names, truth, &reader.options, &inputs);
-        let suggested = inputs.shading();
+        let suggested = if points { SuggestedShading::POINTS } else { inputs.shading() };
         let whole = loaded(inputs.model, inputs.up, inputs.suggestion)?;
         // Built-in scenes have no properties to read.
         let is_scene = names.iter().any(|name| scene(name).is_some());
@@ -219,7 +223,7 @@ mod tests {
         let input = [input.into()];
         let command = ["surfel", "view", "-q", "x.ply"];
         let Command::View(args) = Surfel::try_parse_from(command).unwrap().command else { panic!("no view") };
-        loader(&args, None)?(&input, window)
+        loader(&args, None, None)?(&input, window)
     }
 
     #[test]
@@ -270,7 +274,7 @@ mod tests {
         }
         let command = ["surfel", "view", "-q", "--color-by", "heat", "--color-map", "magma", "x.ply"];
         let Command::View(args) = Surfel::try_parse_from(command).unwrap().command else { panic!("no view") };
-        let load = loader(&args, None).unwrap();
+        let load = loader(&args, None, None).unwrap();
         for inputs in [&names[..1], &names[..]] {
             let loaded = load(inputs, &Window::default()).unwrap();
             let by = loaded.colour_by.unwrap();

@@ -102,6 +102,15 @@ impl Draft {
         self.lacking() != [0; 2]
     }
 
+    /// The surfels without any estimation: those without a normal become billboards, and all without a radius get the same one.
+    pub fn finish_bare(mut self, how: &Estimate) -> Result<(Surfels, Estimated)> {
+        let radius = rough_spacing(&self.surfels.positions).unwrap_or(1.0);
+        self.surfels.radii.iter_mut().filter(|own| **own == 0.0).for_each(|own| *own = radius);
+        self.triangles.clear();
+        let (surfels, estimated) = self.finish(how)?;
+        Ok((surfels, Estimated { billboards: 0, ..estimated }))
+    }
+
     /// The surfels; an error if a radius is invalid.
     pub fn finish(self, how: &Estimate) -> Result<(Surfels, Estimated)> {
         let Self { mut surfels, mut estimated, .. } = self;
@@ -135,6 +144,20 @@ impl Draft {
         estimated.two_sided = two_sided.count() as u64;
         Ok((surfels, estimated))
     }
+}
+
+/// Number of pairs of points for the rough spacing.
+const PAIRS: usize = 1 << 12;
+
+/// Median distance of some points from the next one in Morton order, which is near; `None` if all of them coincide.
+fn rough_spacing(positions: &[Vec3]) -> Option<f32> {
+    let step = positions.len().div_ceil(PAIRS).max(1);
+    let pairs = positions.windows(2).step_by(step);
+    let mut distances: Vec<f32> =
+        pairs.map(|pair| pair[0].distance(pair[1])).filter(|distance| *distance > 0.0).collect();
+    let middle = distances.len() / 2;
+    let median = (!distances.is_empty()).then(|| *distances.select_nth_unstable_by(middle, f32::total_cmp).1);
+    median.filter(|distance| distance.is_finite())
 }
 
 /// Whether a surfel has no normal and is no declared billboard: those have a radius and are two-sided.

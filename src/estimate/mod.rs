@@ -87,6 +87,9 @@ pub struct Estimate {
     pub sharp: Option<f32>,
     /// Radius of ribbons and tubes without one, in the positions' unit.
     pub line_radius: Option<f32>,
+    /// Whether nothing is estimated of points, for [`Footprint::Point`](crate::settings::splatting::Footprint::Point): those without a normal become
+    /// billboards, and those without a radius get a rough one, the same for all. Faces are left out.
+    pub bare: bool,
 }
 
 impl Default for Estimate {
@@ -102,6 +105,7 @@ impl Default for Estimate {
             outliers: None,
             sharp: None,
             line_radius: None,
+            bare: false,
         }
     }
 }
@@ -149,7 +153,7 @@ pub struct Estimated {
     /// Points whose estimated normals have little in common with those of their neighbours, as in vegetation and in the noise of depth
     /// cameras: they mean nothing. Most billboards are among them.
     pub scattered: u64,
-    /// Billboards: points on no surface, or declared by the file.
+    /// Billboards: points on no surface, or declared by the file; none of those of [`Estimate::bare`].
     pub billboards: u64,
     /// Other two-sided surfels: the side of the normal is unknown, or the file declares it.
     pub two_sided: u64,
@@ -230,6 +234,9 @@ impl Cloud {
             draft.keep(&kept);
         }
         draft.count_given();
+        if how.bare {
+            return draft.finish_bare(how);
+        }
         progress.check_cancelled()?;
         winding::turn(&mut draft);
         faces::fill(&mut draft, how);

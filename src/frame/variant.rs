@@ -232,7 +232,9 @@ impl Variant {
             split: options.split && (tiled || settings.pull_push.is_some())
                 || tiled && splatting.visibility == Visibility::Axis,
             sliced: false,
-            clips: tiled && streams.iter().any(|streams| streams.clips),
+            clips: tiled
+                && splatting.footprint != Footprint::Point
+                && streams.iter().any(|streams| streams.clips),
             curvatures: settings.pull_push.is_none()
                 && settings.drawn_alpha() == Alpha::Coverage
                 && splatting.footprint.is_in_tangent_plane()
@@ -397,7 +399,7 @@ impl SceneVariant {
             frame,
             ellipses: streams.ellipses,
             curvatures: streams.curvatures && frame.curvatures,
-            clips: streams.clips,
+            clips: streams.clips && frame.footprint != Footprint::Point,
             two_sided: streams.two_sided,
             billboards: streams.billboards,
             weights: weights.is_some(),

@@ -20,6 +20,11 @@ pub struct SuggestedShading {
     pub ao: f32,
 }
 
+impl SuggestedShading {
+    /// That of points of a fixed size, which have no estimated normals: eye-dome lighting.
+    pub const POINTS: Self = Self { shading: Shading::Edl, ao: 0.0 };
+}
+
 impl LoadedModel {
     /// What shows the points' shape. If many of them are billboards, or have estimated normals that mean nothing ([`Estimated::scattered`]),
     /// it is [`Shading::Edl`] for points with colours. Of points without, eye-dome lighting shows outlines alone: if many of these are billboards,

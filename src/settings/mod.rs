@@ -8,7 +8,7 @@ pub mod splatting;
 
 use crate::error::{Error, Result};
 use crate::settings::pull_push::PullPush;
-use crate::settings::splatting::{Filter, Splatting, Visibility};
+use crate::settings::splatting::{Filter, Footprint, Splatting, Visibility};
 pub use choice::Choice;
 pub use outputs::{Outputs, Precision, Rasterizer, RasterizerChoice, RasterizerReason};
 use std::ops::RangeInclusive;
@@ -31,6 +31,9 @@ pub struct Settings {
     pub pixel_filter: f32,
     /// Splats that the low-pass filter widens.
     pub widen: Widen,
+    /// Diameter of the circles of [`Footprint::Point`], px, within [`Settings::POINT_SIZES`]; unused otherwise. A smaller one than 1.42 px counts
+    /// as that, so that each covers a pixel centre.
+    pub point_size: f32,
     /// Level of detail, px: cells of at most this side are drawn as one surfel, in scenes with levels ([`crate::geometry::Levels`]); 0 draws all
     /// points.
     pub lod: f32,
@@ -68,6 +71,7 @@ impl Default for Settings {
             lowpass: 1.0,
             pixel_filter: 0.75,
             widen: Widen::Small,
+            point_size: Self::DEFAULT_POINT_SIZE,
             lod: 0.0,
             max_points: None,
             epsilon: 1.0,
@@ -87,6 +91,10 @@ impl Settings {
     /// Range of cut-offs, σ. A Gaussian is below 10⁻¹³ beyond 8 σ. Lighting needs sums of normals whose squares do not underflow in
     /// float32, as they do for weights below 10⁻¹⁹.
     pub const CUTOFFS: RangeInclusive<f32> = 0.1..=8.0;
+    /// Range of diameters of points, px.
+    pub const POINT_SIZES: RangeInclusive<f32> = 1.0..=64.0;
+    /// Diameter of points where none is given, px.
+    pub const DEFAULT_POINT_SIZE: f32 = 2.0;
     /// Largest level of detail, px.
     pub const MOST_LOD: f32 = 1000.0;
     /// Largest low-pass variance, px²: the filter widens a splat to at most 10 px per σ.
@@ -112,9 +120,16 @@ impl Settings {
     pub const MOST_AO: f32 = 10.0;
 
     /// Least low-pass variance at which every splat covers a pixel centre, px²: `(0.71 / F)²`, so that the cut-off radius is at least √½
-    /// px. The visibility footprint has at least this.
+    /// px. The visibility footprint has at least this. Points of a fixed size have no other extent than that of the filter, so for these it
+    /// is that of their circle.
     pub fn least_lowpass(&self) -> f32 {
-        (0.71 / self.cutoff).powi(2)
+        let radius = if self.draws_points() { (0.5 * self.point_size).max(0.71) } else { 0.71 };
+        (radius / self.cutoff).powi(2)
+    }
+
+    /// Whether every point is a circle of a fixed size.
+    pub fn draws_points(&self) -> bool {
+        self.pull_push.is_none() && self.splatting.footprint == Footprint::Point
     }
 
     /// Radius of the filter of pixels, px: 3 σ, rounded up; 0 if the picture is not filtered.
@@ -142,7 +157,11 @@ impl Settings {
     }
 
     /// The meaning of α in the picture: normals, depths and counts are not blended with a colour, so before a background their α is a mask.
+    /// So is that of points of a fixed size, which cover no part of a surface.
     pub fn drawn_alpha(&self) -> Alpha {
+        if self.draws_points() {
+            return Alpha::Mask;
+        }
         if self.shading.is_coloured() || self.background.is_none() { self.alpha } else { Alpha::Mask }
     }
 
@@ -244,6 +263,13 @@ impl Settings {
                 "the strength of ambient occlusion is {}: give a number from 0 to {}",
                 self.ao,
                 Self::MOST_AO
+            )));
+        }
+        if !Self::POINT_SIZES.contains(&self.point_size) {
+            let (least, most) = (Self::POINT_SIZES.start(), Self::POINT_SIZES.end());
+            return Err(Error::Usage(format!(
+                "the size of points is {}: give a number of px from {least} to {most}",
+                self.point_size
             )));
         }
         if !(0.0..=Self::MOST_LOD).contains(&self.lod) {

@@ -56,6 +56,11 @@ pub enum Footprint {
     Square = 6,
     /// A sprite without depth correction: all of it is at the depth of its centre (botsch2003 §3.3, figure 6).
     FlatSprite = 7,
+    /// A circle of the same size on every screen, at the depth of its centre, whatever its disc is.
+    ///
+    /// Its diameter is [`Settings::point_size`](super::Settings::point_size). It needs neither a normal nor a radius: the points of other
+    /// viewers.
+    Point = 8,
 }
 
 /// Falloff of a splat's weight.
@@ -192,7 +197,7 @@ impl Footprint {
 
     /// Whether its depth is that of the tangent plane.
     pub fn is_in_tangent_plane(self) -> bool {
-        !self.is_sprite() && self != Self::Square
+        !self.is_sprite() && !matches!(self, Self::Square | Self::Point)
     }
 
     /// Whether it is an elliptical sprite.
@@ -237,6 +242,12 @@ impl Splatting {
             }
             (Footprint::Square, Filter::Screen | Filter::Object) => {
                 refuse("squares have no kernel to filter: choose the filter none")
+            }
+            (Footprint::Point, _) if blends => {
+                refuse("points of a fixed size have no kernel to blend by: choose the visibility nearest")
+            }
+            (Footprint::Point, Filter::Screen | Filter::Object) => {
+                refuse("points of a fixed size have no kernel to filter: choose the filter none")
             }
             (_, Filter::Screen | Filter::Object) if confetti => refuse(
                 "a Confetti kernel has no closed form under a low-pass filter (pajarola2004 §8): choose the filter none",
@@ -287,10 +298,14 @@ mod tests {
     fn what_makes_no_sense_together_is_refused_with_its_reason() {
         let conic = Splatting::default();
         let confetti = Kernel::Confetti { a: 6.0, n: 3.0 };
+        let single =
+            Splatting { visibility: Visibility::Nearest, normalization: Normalization::None, ..conic };
         let cases = [
             (Splatting { footprint: Footprint::Disc, ..conic }, "filter there"),
             (Splatting { filter: Filter::Object, ..conic }, "footprint parallelogram or disc"),
             (Splatting { footprint: Footprint::Square, ..conic }, "visibility nearest"),
+            (Splatting { footprint: Footprint::Point, ..conic }, "visibility nearest"),
+            (Splatting { footprint: Footprint::Point, ..single }, "filter none"),
             (Splatting { kernel: confetti, ..conic }, "no closed form"),
             (Splatting { visibility: Visibility::Nearest, ..conic }, "normalization none"),
             (Splatting { kernel: Kernel::Confetti { a: 0.0, n: 3.0 }, ..conic }, "above 0"),

@@ -30,6 +30,8 @@ pub struct SavedSettings {
     #[serde(default)]
     pixel_filter: f32,
     widen: String,
+    #[serde(default = "default_point_size")]
+    point_size: f32,
     epsilon: f32,
     cull: String,
     alpha: String,
@@ -93,6 +95,7 @@ impl SavedSettings {
             lowpass: settings.lowpass,
             pixel_filter: settings.pixel_filter,
             widen: settings.widen.name().into(),
+            point_size: settings.point_size,
             epsilon: settings.epsilon,
             cull: settings.cull.name().into(),
             alpha: settings.alpha.name().into(),
@@ -125,6 +128,7 @@ impl SavedSettings {
             cutoff: self.cutoff,
             lowpass: self.lowpass,
             pixel_filter: self.pixel_filter,
+            point_size: self.point_size,
             lod: 0.0,
             max_points: None,
             widen: Widen::named(&self.widen)?,
@@ -163,6 +167,11 @@ fn default_edl() -> f32 {
     Settings::DEFAULT_EDL
 }
 
+/// Size of points of files that do not contain it, px.
+fn default_point_size() -> f32 {
+    Settings::DEFAULT_POINT_SIZE
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -181,6 +190,7 @@ mod tests {
             },
             cutoff: 3.25,
             pixel_filter: 0.4,
+            point_size: 7.5,
             epsilon: 0.3,
             cull: Cull::Back,
             alpha: Alpha::Coverage,
@@ -191,7 +201,7 @@ mod tests {
             background: Some([0.1, 0.2, 1.0]),
             ..Settings::default()
         };
-        let presets = Method::ALL.map(|method| (method.name, method.settings()));
+        let presets = Method::CHOICES.map(|method| (method.name, method.settings()));
         for (name, settings) in presets.into_iter().chain([("sprites", changed)]) {
             SavedSettings::of_settings(name, &settings, true).write(&path).unwrap();
             let read = SavedSettings::read(&path).unwrap();

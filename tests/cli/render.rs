@@ -56,6 +56,42 @@ fn pull_push_matches_the_reference() {
 }
 
 #[test]
+fn points_of_a_fixed_size_need_no_estimation() {
+    let Some(program) = Program::with_device("points_of_a_fixed_size_need_no_estimation") else { return };
+    let rows = (0..40).flat_map(|y| (0..40).map(move |x| format!("{x} {y} 0 200 {x} {y}\n")));
+    program.write("a.xyz", format!("//x y z red green blue\n{}", rows.collect::<String>()));
+    // A point every 10 px; the others' rows are empty.
+    let common = "render a.xyz --size 400x400 --eye 20,20,50 --target 20,20,0 --parallel 40";
+    let run = program.run(&format!("{common} -o gpu.png --point-size 4 --validate --json report.json"));
+    run.text();
+    assert!(!run.err.contains("normals") && !run.err.contains("shaded"), "{}", run.err);
+    let report: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(program.path("report.json")).unwrap()).unwrap();
+    let settings = &report["settings"];
+    assert_eq!((&report["method"], &settings["footprint"]), (&"points".into(), &"point".into()));
+    assert_eq!((&settings["point_size"], &settings["shading"]), (&4.0.into(), &"edl".into()));
+    assert_eq!(report["estimated"]["normals"]["from_neighbours"], 0);
+    let covered = |name: &str| program.png(name).pixels().filter(|pixel| pixel[3] > 0).count() as f64;
+    // Half of the points of the outermost rows are in the picture.
+    let expected = std::f64::consts::PI * 4.0 * 39.5 * 39.5;
+    assert!((covered("gpu.png") / expected - 1.0).abs() < 0.1, "{} for {expected}", covered("gpu.png"));
+    program.run(&format!("{common} -o cpu.png --point-size 4 --reference")).text();
+    assert!(difference(&program.png("gpu.png"), &program.png("cpu.png")) < 0.1);
+    program.run(&format!("{common} -o two.png --method points --every 2")).text();
+    assert!(covered("two.png") > 0.0 && 3.0 * covered("two.png") < covered("gpu.png"));
+    let wrong = program.run(&format!("{common} -o a.png --point-size 3 --method sprites"));
+    assert!(
+        wrong.error(2).contains("--point-size 3 is of --method points, and sprites draws discs"),
+        "{}",
+        wrong.err
+    );
+    for size in ["0.5", "65", "nan"] {
+        let wrong = program.run(&format!("{common} -o a.png --point-size {size}"));
+        assert!(wrong.error(2).contains("from 1 to 64"), "{}", wrong.err);
+    }
+}
+
+#[test]
 fn standard_output_takes_a_png_and_nothing_else() {
     let Some(program) = Program::with_device("standard_output_takes_a_png_and_nothing_else") else { return };
     let run = program.run(&format!("render {SPHERE} -o - --size 17x9 --validate --times"));

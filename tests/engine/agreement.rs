@@ -204,6 +204,7 @@ fn every_case_by_other_axes() {
         Splatting { shade: Shade::MeanNormal, ..conic },
         nearest,
         Splatting { footprint: Footprint::Square, filter: Filter::None, ..nearest },
+        Splatting { footprint: Footprint::Point, filter: Filter::None, ..nearest },
     ];
     let by = |(i, splatting): (usize, Splatting)| {
         let cases = with_axes(|case| Settings { splatting, ..case.settings.clone() });

@@ -29,10 +29,10 @@ use clap_complete::Shell;
 use glam::DVec3;
 use std::ffi::OsString;
 use std::path::PathBuf;
-use surfel::settings::methods::Method;
+use surfel::settings::methods::{self, Method};
 use surfel::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
 use surfel::settings::{Alpha, Choice, Cull, Edges, Shading, Widen};
-use surfel::{Outputs, Rasterizer, Settings};
+use surfel::{Error, Outputs, Rasterizer, Result, Settings};
 
 /// Renders point-sampled surfaces with Vulkan.
 #[derive(Debug, Parser)]
@@ -189,6 +189,14 @@ pub enum PassTimes {
 }
 
 impl Render {
+    /// The given method, if any: see [`RenderSettings::method`].
+    ///
+    /// # Errors
+    /// [`surfel::Error::Usage`] if a size of points is given for another method.
+    pub fn method(&self) -> Result<Option<Method>> {
+        self.render_settings.method(self.method, &self.axes)
+    }
+
     /// The additional images.
     pub fn outputs(&self) -> Outputs {
         outputs(&self.layers)
@@ -265,6 +273,9 @@ pub struct RenderSettings {
     /// Which surfels are culled by their orientation [default: the method's]
     #[arg(long, value_parser = choice::<Cull>())]
     pub cull: Option<Cull>,
+    /// Shows every point as a circle of this diameter, px, by method points, which estimates neither normals nor radii [default of that method: 2]
+    #[arg(long, value_name = "PX", allow_hyphen_values = true)]
+    pub point_size: Option<f32>,
     /// Level of detail, px: surfels that stand for all points of a cell are drawn where its side is at most this; 0 draws all points
     #[arg(long, value_name = "PX", default_value_t = 0.0, allow_hyphen_values = true)]
     pub lod: f32,
@@ -327,6 +338,22 @@ impl RenderSettings {
         [shading, shading || self.ao.is_some()]
     }
 
+    /// The method, of which `asked` is the given one: points of a fixed size, if a size is given.
+    ///
+    /// # Errors
+    /// [`surfel::Error::Usage`] if a size of points is given for another method.
+    fn method(&self, asked: Option<Method>, axes: &Axes) -> Result<Option<Method>> {
+        let Some(size) = self.point_size else { return Ok(asked) };
+        let method = asked.unwrap_or(methods::points::METHOD);
+        if self.settings(axes, &method).draws_points() {
+            return Ok(Some(method));
+        }
+        Err(Error::Usage(format!(
+            "--point-size {size} is of --method points, and {} draws discs: leave one of them out",
+            method.name
+        )))
+    }
+
     /// The settings of a method with these changes and those of `axes`.
     fn settings(&self, axes: &Axes, method: &Method) -> Settings {
         let preset = method.settings();
@@ -337,6 +364,7 @@ impl RenderSettings {
             lowpass: self.lowpass.unwrap_or(preset.lowpass),
             pixel_filter: self.pixel_filter.unwrap_or(preset.pixel_filter),
             widen: self.widen.unwrap_or(preset.widen),
+            point_size: self.point_size.unwrap_or(preset.point_size),
             lod: self.lod,
             max_points: self.max_points,
             epsilon: self.epsilon,

@@ -84,6 +84,7 @@ impl Points {
             outliers: self.drop_outliers,
             sharp: None,
             line_radius: self.line_radius,
+            bare: false,
         }
     }
 }

@@ -6,7 +6,7 @@ use clap::Args;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use surfel::settings::methods::Method;
-use surfel::{Rasterizer, Settings};
+use surfel::{Rasterizer, Result, Settings};
 
 /// Options of `surfel view`.
 #[derive(Args, Debug)]
@@ -65,6 +65,14 @@ pub struct View {
 }
 
 impl View {
+    /// The given method, if any: points of a fixed size, if a size is given.
+    ///
+    /// # Errors
+    /// [`surfel::Error::Usage`] if a size of points is given for another method.
+    pub fn method(&self) -> Result<Option<Method>> {
+        self.render_settings.method(self.method, &self.axes)
+    }
+
     /// The settings of a method with the changes of the options.
     pub fn settings(&self, method: &Method) -> Settings {
         self.render_settings.settings(&self.axes, method)

@@ -12,6 +12,7 @@
 pub mod confetti;
 pub mod object_ewa;
 pub mod perspective_ewa;
+pub mod points;
 pub mod pull_push;
 pub mod sprites;
 
@@ -72,9 +73,15 @@ impl Method {
         [a, b, c, d, e, f, g, h, i, j, k]
     };
 
-    /// The preset with this name.
+    /// All that can be chosen: the presets, and points of a fixed size.
+    pub const CHOICES: [Self; 12] = {
+        let [a, b, c, d, e, f, g, h, i, j, k] = Self::ALL;
+        [a, b, c, d, e, f, g, h, i, j, k, points::METHOD]
+    };
+
+    /// The choice with this name.
     pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|method| method.name == name)
+        Self::CHOICES.into_iter().find(|method| method.name == name)
     }
 
     /// Whether it is one of [`Self::PAPERS`].
@@ -111,7 +118,7 @@ mod tests {
 
     #[test]
     fn presets_are_valid_and_distinct() {
-        for method in Method::ALL {
+        for method in Method::CHOICES {
             method.settings().check().unwrap();
             assert_eq!(Method::named(method.name), Some(method));
         }

@@ -202,7 +202,9 @@ impl Projector {
         let axes = self.semi_axes(surfel);
         let (projected, mapping) = self.tangent_plane(centre, axes);
         let clear = clearance(&mapping, self.cutoff()) / (mapping.z_axis.z / self.cutoff()).powi(2);
-        if clear.is_nan() || clear <= LEAST_CLEARANCE {
+        // A point of a fixed size has no disc that could reach the eye, nor one that lines could clip.
+        let is_point = self.settings.draws_points();
+        if !is_point && (clear.is_nan() || clear <= LEAST_CLEARANCE) {
             return Err(Culled::EyePlane);
         }
         let facing = self.facing(centre, normal);
@@ -214,7 +216,7 @@ impl Projector {
         let image = self.image(&Disc { surfel, centre, normal, axes, projected, mapping });
         let shown = surfel.colour.unwrap_or(DVec3::from_array(self.settings.lighting.albedo.map(f64::from)));
         let towards = if facing > 0.0 { -surfel.normal } else { surfel.normal };
-        let secant = self.secant(centre, facing);
+        let secant = if is_point { 1.0 } else { self.secant(centre, facing) };
         let splat = Splat {
             centre: image.centre,
             variance: image.variance,
@@ -226,11 +228,11 @@ impl Projector {
             normal: towards,
             colour: self.splat_colour(shown, towards, centre),
             secant,
-            aspect: surfel.aspect,
+            aspect: if is_point { 1.0 } else { surfel.aspect },
             weights: if by_surfel { surfel.weights } else { [1.0; 4] },
             square,
             dual: image.dual,
-            clip: surfel.clip.map(|clip| self.screen_clip(&clip, centre, normal)),
+            clip: surfel.clip.filter(|_| !is_point).map(|clip| self.screen_clip(&clip, centre, normal)),
             turn: (facing < 0.0).then(|| self.turn_line(surfel, centre, image.plane)).flatten(),
             back: facing >= 0.0 && !surfel.two_sided,
             certain: true,

@@ -34,6 +34,9 @@ pub(super) struct Image {
     pub dual: bool,
 }
 
+/// Deviation of a point before the low-pass filter, px.
+const POINT_DEVIATION: f64 = 1e-6;
+
 /// Least cosine by which a sprite is foreshortened.
 const LEAST_FORESHORTENING: f64 = 0.1;
 
@@ -47,6 +50,7 @@ impl Projector {
             Footprint::WholeSprite => self.sprite_image(disc, self.whole(disc)),
             Footprint::Square => self.square_image(disc),
             Footprint::FlatSprite => self.flat_sprite_image(disc),
+            Footprint::Point => self.point_image(disc),
         }
     }
 
@@ -142,13 +146,22 @@ impl Projector {
     /// A square parallel to the image plane, of the disc's size and at its depth (botsch2003 §3.1).
     fn square_image(&self, disc: &Disc) -> Image {
         let scale = self.flat_scale(disc) * (disc.surfel.radius / self.cutoff());
-        let side = DVec2::new(scale.row(0).length(), scale.row(1).length());
+        self.level_image(disc, DVec2::new(scale.row(0).length(), scale.row(1).length()))
+    }
+
+    /// A point, which the low-pass filter makes a circle of a fixed size.
+    fn point_image(&self, disc: &Disc) -> Image {
+        self.level_image(disc, DVec2::splat(POINT_DEVIATION))
+    }
+
+    /// An image along the axes of the screen with these deviations, px, at the depth of the disc's centre.
+    fn level_image(&self, disc: &Disc, deviations: DVec2) -> Image {
         let distance = self.distance(disc.centre);
         let value = if self.depth.perspective { 1.0 / distance } else { distance };
         Image {
             centre: disc.projected,
-            variance: DMat2::from_diagonal(side * side),
-            sqrt_det: side.x * side.y,
+            variance: DMat2::from_diagonal(deviations * deviations),
+            sqrt_det: deviations.x * deviations.y,
             plane: DVec3::new(value, 0.0, 0.0),
             nearest: distance,
             dual: false,

@@ -60,7 +60,7 @@ fn choose(ui: &mut Ui, choices: &mut Choices<'_>) {
 /// triangles.
 pub fn list(ui: &mut Ui, chosen: &str, primitives: bool) -> Option<Method> {
     let mut clicked = None;
-    for method in Method::ALL {
+    for method in Method::CHOICES {
         let is_disabled = primitives && method.pull_push.is_none();
         let reason = is_disabled.then_some("Only pull-push renders lines and triangles.");
         if choice(ui, method.name == chosen, method.name, method.paper, reason) {
@@ -75,6 +75,10 @@ fn parameters(ui: &mut Ui, settings: &mut Settings) {
     let slider = |ui: &mut Ui, value: &mut f32, range: RangeInclusive<f32>, name: &str, text: &str| {
         ui.add(Slider::new(value, range).clamping(SliderClamping::Edits).text(name)).on_hover_text(text);
     };
+    if settings.draws_points() {
+        let text = "Diameter of every point, whatever its distance.";
+        return slider(ui, &mut settings.point_size, 1.0..=16.0, "point size, px", text);
+    }
     let Settings { splatting, cutoff, lowpass, pixel_filter, epsilon, widen, .. } = settings;
     slider(
         ui,
