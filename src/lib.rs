@@ -65,6 +65,7 @@ pub mod picture;
 mod progress;
 pub mod scene;
 pub mod settings;
+mod thousands;
 pub mod verify;
 pub mod vk;
 
@@ -79,3 +80,4 @@ pub use picture::Picture;
 pub use progress::Progress;
 pub use scene::{Instance, Instances, Scene};
 pub use settings::{Outputs, Precision, Rasterizer, RasterizerChoice, RasterizerReason, Settings};
+pub use thousands::thousands;

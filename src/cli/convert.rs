@@ -11,7 +11,7 @@ use surfel::geometry::{Model, Surfels};
 use surfel::load::{LoadOptions, load};
 use surfel::settings::methods::object_ewa;
 use surfel::vk::Device;
-use surfel::{Error, Progress, Result};
+use surfel::{Error, Progress, Result, thousands};
 
 /// Writes the model of inputs to a file. The output is checked before anything is read.
 pub fn run(args: &Convert) -> Result<()> {
@@ -71,6 +71,7 @@ fn capture_weights(
     surfels.weights = Some(weights);
     let Captured { seen, borders, computed } = found;
     if !quiet {
+        let [seen, borders, computed] = [seen, borders, computed].map(thousands);
         progress::say(&format!(
             "weights of {seen} surfels from {views} views, {borders} of them at borders; {computed} computed"
         ));

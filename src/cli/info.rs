@@ -8,12 +8,12 @@ use super::files::print;
 use super::progress;
 use std::fmt::Write;
 use std::path::Path;
-use surfel::Result;
 use surfel::estimate::{Estimate, Estimated, spacing};
 use surfel::formats::declared::Element;
 use surfel::formats::{self, Dropped, Faces, Inspected, Lines, Loaded, ReadOptions, Report};
 use surfel::geometry::{Cloud, Colours, Model, Parts, View};
 use surfel::load::{scene, scene_cloud};
+use surfel::{Result, thousands};
 
 /// Number of skipped names that are printed; the header lists all of them.
 const MOST_NAMES: usize = 8;
@@ -60,7 +60,7 @@ fn scene_text(name: &str, how: &Estimate) -> Result<String> {
 fn header(path: &Path, format: &str, elements: &[Element]) -> String {
     let mut text = format!("{}: {format}\n", path.display());
     for element in elements {
-        let (name, count) = (printable(&element.name), element.count);
+        let (name, count) = (printable(&element.name), thousands(element.count));
         // Here and below: writing to a String cannot fail.
         let _ = writeln!(text, "element {name}: {count}");
         for property in &element.properties {
@@ -102,10 +102,11 @@ fn properties(report: &Report) -> String {
 /// Describes a model of `points` points.
 fn describe(model: &Model, points: u64) -> String {
     let Model { surfels, primitives } = model;
-    let mut text = format!("points: {points}\nsurfels: {}\n", surfels.len());
+    let count = |count: usize| thousands(count as u64);
+    let mut text = format!("points: {}\nsurfels: {}\n", thousands(points), count(surfels.len()));
     if !primitives.is_empty() {
-        let (ribbons, tubes) = (primitives.ribbons.len(), primitives.tubes.len());
-        let (triangles, vertices) = (primitives.triangles.len(), primitives.len());
+        let [ribbons, tubes] = [primitives.ribbons.len(), primitives.tubes.len()].map(count);
+        let [triangles, vertices] = [primitives.triangles.len(), primitives.len()].map(count);
         let _ = writeln!(text, "ribbons: {ribbons}\ntubes: {tubes}\ndrawn triangles: {triangles}");
         let _ = writeln!(text, "vertices of these: {vertices}, {}", range_text(&primitives.radii));
     }
@@ -160,14 +161,16 @@ fn connectivity(report: &Report, cloud: &Cloud) -> String {
     }
     let Faces { understood, skipped } = report.faces;
     if understood + skipped > 0 {
+        let [understood, skipped] = [understood, skipped].map(thousands);
         let _ = writeln!(text, "faces: {understood} understood, {skipped} skipped");
     }
     let Lines { understood, skipped, sides } = report.lines;
     if understood + skipped + sides > 0 {
+        let [understood, skipped, sides] = [understood, skipped, sides].map(thousands);
         let _ = writeln!(text, "lines: {understood} understood, {skipped} skipped, {sides} sides of faces");
     }
     if !cloud.triangles.is_empty() {
-        let _ = writeln!(text, "triangles: {}", cloud.triangles.len());
+        let _ = writeln!(text, "triangles: {}", thousands(cloud.triangles.len() as u64));
     }
     text
 }
@@ -176,7 +179,7 @@ fn connectivity(report: &Report, cloud: &Cloud) -> String {
 fn sources(estimated: &Estimated) -> String {
     let list = |counts: &[(u64, &str)]| {
         let some = counts.iter().filter(|(count, _)| *count > 0);
-        some.map(|(count, what)| format!("{count} {what}")).collect::<Vec<_>>().join(", ")
+        some.map(|(count, what)| format!("{} {what}", thousands(*count))).collect::<Vec<_>>().join(", ")
     };
     let normals = list(&[
         (estimated.normals_given, "given"),
@@ -203,7 +206,10 @@ fn sources(estimated: &Estimated) -> String {
 /// Describes the points that are left out.
 fn dropped(Dropped { position, transparent, thinned, filtered }: Dropped, estimated: &Estimated) -> String {
     let Estimated { unused, outliers, .. } = *estimated;
-    let by = |count: u64, what: &str| if count > 0 { format!(", {count} {what}") } else { String::new() };
+    let by = |count: u64, what: &str| {
+        if count > 0 { format!(", {} {what}", thousands(count)) } else { String::new() }
+    };
+    let [position, transparent, unused, outliers] = [position, transparent, unused, outliers].map(thousands);
     let (thinned, filtered) = (by(thinned, "by thinning"), by(filtered, "by the filter"));
     format!(
         "left out: {position} without a finite position, {transparent} less than a tenth opaque, {unused} that no face uses, {outliers} \
@@ -215,6 +221,6 @@ fn dropped(Dropped { position, transparent, thinned, filtered }: Dropped, estima
 fn trailing(report: &Report) -> String {
     match report.trailing {
         0 => String::new(),
-        bytes => format!("after the last element: {bytes} bytes that mean nothing\n"),
+        bytes => format!("after the last element: {} bytes that mean nothing\n", thousands(bytes)),
     }
 }

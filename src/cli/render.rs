@@ -13,7 +13,7 @@ use surfel::geometry::{Camera, Extent, Levels, Model, Parts};
 use surfel::load::{Coloured, Colouring, LoadOptions, SuggestedShading, Uncoloured, load};
 use surfel::settings::Shading;
 use surfel::settings::methods::{Method, pull_push};
-use surfel::{Error, Outputs, Picture, Progress, Result, Settings, SplatCounts};
+use surfel::{Error, Outputs, Picture, Progress, Result, Settings, SplatCounts, thousands};
 
 /// A picture to render, with Vulkan or the reference.
 pub struct Task<'a> {
@@ -243,7 +243,10 @@ fn print_summary(args: &Render, contents: &str, outcome: &Outcome) {
     }
     if !args.quiet {
         let [width, height] = args.size;
-        let drawn = outcome.counts.map(|counts| format!(", {} drawn", counts.drawn)).unwrap_or_default();
+        let drawn = outcome
+            .counts
+            .map(|counts| format!(", {} drawn", thousands(counts.drawn.into())))
+            .unwrap_or_default();
         let out = Path::new(&args.output).display();
         progress::say(&format!("{out}: {width}x{height}, {contents}{drawn}"));
     }

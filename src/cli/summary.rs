@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 use std::path::Path;
-use surfel::Settings;
 use surfel::geometry::{Camera, Model, Surfels};
 use surfel::load::LoadedModel;
 use surfel::settings::{Cull, Shading};
+use surfel::{Settings, thousands};
 
 /// Parts of a model: `5 surfels, 2 ribbons`.
 pub fn parts(Model { surfels, primitives }: &Model) -> String {
@@ -17,11 +17,11 @@ pub fn parts(Model { surfels, primitives }: &Model) -> String {
     let others: Vec<_> = others
         .iter()
         .filter(|(count, _)| **count > 0)
-        .map(|(count, what)| format!("{count} {what}"))
+        .map(|(count, what)| format!("{} {what}", thousands(**count as u64)))
         .collect();
     match (surfels.len(), others.is_empty()) {
         (0, false) => others.join(", "),
-        (count, _) => [vec![format!("{count} surfels")], others].concat().join(", "),
+        (count, _) => [vec![format!("{} surfels", thousands(count as u64))], others].concat().join(", "),
     }
 }
 

@@ -1,24 +1,26 @@
 //! Summary of an estimation.
 
 use super::Estimated;
+use crate::thousands;
 
 impl Estimated {
     /// One line on the estimated and removed attributes; `None` if there are none.
     pub fn summary(&self) -> Option<String> {
         let counts = self;
+        let some = |count: u64| (count > 0).then(|| thousands(count));
         let normals = sources(counts.normals_from_faces, counts.normals_from_neighbours);
         let radii = sources(counts.radii_from_faces, counts.radii_from_neighbours);
-        let two_sided = Some(counts.two_sided).filter(|&count| count > 0 && normals.is_some());
-        let scattered = Some(counts.scattered).filter(|&count| count > 0);
-        let billboards = Some(counts.billboards).filter(|&count| count > 0);
-        let turned = Some(counts.triangles_turned).filter(|&count| count > 0);
-        let replaced = Some(counts.vertices_replaced).filter(|&count| count > 0);
-        let outliers = Some(counts.outliers).filter(|&count| count > 0);
-        let unused = Some(counts.unused).filter(|&count| count > 0);
-        let bounded = Some(counts.bounded).filter(|&count| count > 0);
-        let clipped = Some(counts.clipped).filter(|&count| count > 0);
-        let along = Some(counts.line_radii_from_lines).filter(|&count| count > 0);
-        let thin = Some(counts.line_radii_from_extent).filter(|&count| count > 0);
+        let two_sided = some(counts.two_sided).filter(|_| normals.is_some());
+        let scattered = some(counts.scattered);
+        let billboards = some(counts.billboards);
+        let turned = some(counts.triangles_turned);
+        let replaced = some(counts.vertices_replaced);
+        let outliers = some(counts.outliers);
+        let unused = some(counts.unused);
+        let bounded = some(counts.bounded);
+        let clipped = some(counts.clipped);
+        let along = some(counts.line_radii_from_lines);
+        let thin = some(counts.line_radii_from_extent);
         let parts = [
             normals.map(|text| format!("normals of {text}")),
             radii.map(|text| format!("radii of {text}")),
@@ -47,11 +49,12 @@ impl Estimated {
 
 /// `5 points from faces, 3 from neighbours`.
 fn sources(faces: u64, neighbours: u64) -> Option<String> {
+    let [of_faces, of_neighbours] = [faces, neighbours].map(thousands);
     match (faces, neighbours) {
         (0, 0) => None,
-        (faces, 0) => Some(format!("{faces} points from faces")),
-        (0, neighbours) => Some(format!("{neighbours} points from neighbours")),
-        (faces, neighbours) => Some(format!("{faces} points from faces, {neighbours} from neighbours")),
+        (_, 0) => Some(format!("{of_faces} points from faces")),
+        (0, _) => Some(format!("{of_neighbours} points from neighbours")),
+        _ => Some(format!("{of_faces} points from faces, {of_neighbours} from neighbours")),
     }
 }
 
@@ -71,7 +74,7 @@ mod tests {
             billboards: 12,
             ..Default::default()
         };
-        let line = "normals of 34834 points from faces, 1113 from neighbours; radii of 35947 points from neighbours; 210 two-sided; \
+        let line = "normals of 34,834 points from faces, 1,113 from neighbours; radii of 35,947 points from neighbours; 210 two-sided; \
                     12 on no surface, as discs that face the eye";
         assert_eq!(mixed.summary().as_deref(), Some(line));
         let lines = Estimated { line_radii_from_lines: 2, line_radii_from_extent: 4, ..given };

@@ -3,7 +3,7 @@
 use super::Listener;
 use crate::formats::colour_bar::ColourBar;
 use crate::geometry::{Cloud, ColourMap, ColourScale, Colours, Model, Quantity, ValueRange};
-use crate::{Error, Result};
+use crate::{Error, Result, thousands};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -148,10 +148,12 @@ impl Colouring {
         let range = self.range.unwrap_or(usual);
         let default = self.range.is_none().then(|| {
             let [min, max] = [range.min, range.max].map(short);
-            format!("{min} to {max} (1st to 99th percentile of {finite})")
+            format!("{min} to {max} (1st to 99th percentile of {})", thousands(finite))
         });
-        let grey =
-            (finite < count).then(|| format!("{} of {count} points have none and are grey", count - finite));
+        let grey = (finite < count).then(|| {
+            let [without, all] = [count - finite, count].map(thousands);
+            format!("{without} of {all} points have none and are grey")
+        });
         let notes: Vec<_> = default.into_iter().chain(grey).collect();
         if !notes.is_empty() {
             listener.note(&format!("{name}: {}", notes.join("; ")));

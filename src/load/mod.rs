@@ -18,7 +18,7 @@ use crate::geometry::{Cloud, Lined, MipMap, Model, ToLines};
 use crate::settings::Settings;
 #[cfg(feature = "scenes")]
 use crate::verify::scenes;
-use crate::{Error, Progress, Result};
+use crate::{Error, Progress, Result, thousands};
 use glam::{DVec3, Vec3};
 use std::ffi::OsStr;
 use std::path::Path;
@@ -287,12 +287,15 @@ impl Load<'_> {
     /// Notes how many points of a file the filter leaves out.
     fn note_filtered(&self, name: &str, report: &Report) {
         let Report { points, dropped: Dropped { thinned, filtered, .. }, .. } = report;
-        if let (1.., Some(every)) = (thinned, self.options.filter.every) {
-            self.listener
-                .note(&format!("{name}: {thinned} of {points} points left out: one in {every} is read"));
+        let note = |left_out: u64, why: &str| {
+            let [left_out, points] = [left_out, *points].map(thousands);
+            self.listener.note(&format!("{name}: {left_out} of {points} points left out{why}"));
+        };
+        if let (1.., Some(every)) = (*thinned, self.options.filter.every) {
+            note(*thinned, &format!(": one in {} is read", thousands(every.get())));
         }
         if *filtered > 0 {
-            self.listener.note(&format!("{name}: {filtered} of {points} points left out by the filter"));
+            note(*filtered, " by the filter");
         }
     }
 
@@ -313,7 +316,8 @@ impl Load<'_> {
         let all = Cloud::merge(clouds, Settings::default().lighting.albedo)?;
         let before = all.len();
         let cloud = all.thin(voxel).map_err(|error| error.in_input(name.as_str()))?;
-        self.listener.note(&format!("{name}: {before} points thinned to {}", cloud.len()));
+        let [before, after] = [before, cloud.len()].map(|count| thousands(count as u64));
+        self.listener.note(&format!("{name}: {before} points thinned to {after}"));
         Ok(Part { name, cloud, draws_faces, up, scalar })
     }
 
@@ -328,9 +332,10 @@ impl Load<'_> {
         }
         let mut model = Model::merge(all, Settings::default().lighting.albedo)?;
         if let Some(tolerance) = self.options.simplify {
-            let (before, fewer) = (model.primitives.segments().count(), model.primitives.simplify(tolerance));
-            self.listener
-                .note(&format!("{before} segments of lines simplified to {}", before as u64 - fewer));
+            let before = model.primitives.segments().count() as u64;
+            let after = before - model.primitives.simplify(tolerance);
+            let [before, after] = [before, after].map(thousands);
+            self.listener.note(&format!("{before} segments of lines simplified to {after}"));
         }
         // The surfels of a single input are sorted already.
         if several {
@@ -393,10 +398,11 @@ impl Load<'_> {
         let (cloud, lined) = cloud.to_lines(how).map_err(|error| error.in_input(name))?;
         let Lined { triangles, leaves: [of_leaves, ribbons], branches: [of_branches, tubes], vertices } =
             lined;
+        let all = [triangles, of_leaves, ribbons, of_branches, tubes, vertices[0], vertices[1]];
+        let [triangles, of_leaves, ribbons, of_branches, tubes, vertices, left] = all.map(thousands);
         self.listener.note(&format!(
             "{name}: of {triangles} triangles {of_leaves} are leaves and became {ribbons} segments of ribbons, {of_branches} are branches \
-             and became {tubes} segments of tubes; of {} vertices {} are left",
-            vertices[0], vertices[1]
+             and became {tubes} segments of tubes; of {vertices} vertices {left} are left"
         ));
         Ok(cloud)
     }

@@ -32,23 +32,12 @@ pub fn short_name(name: &str) -> &str {
     Path::new(name).file_name().and_then(|name| name.to_str()).unwrap_or(name)
 }
 
-/// A count with separators of thousands: `1,234,567`.
-pub fn thousands(count: u64) -> String {
-    let digits = count.to_string();
-    let first = digits.len() % 3;
-    let (first, rest) = digits.split_at(first);
-    let groups = rest.as_bytes().chunks(3).map(|group| String::from_utf8_lossy(group).into_owned());
-    let all: Vec<_> =
-        Some(first.to_owned()).filter(|first| !first.is_empty()).into_iter().chain(groups).collect();
-    all.join(",")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn titles_are_short_and_counts_have_separators() {
+    fn titles_are_short() {
         let title = |names: &[&str]| {
             SceneInfo { names: names.iter().map(|&name| name.to_owned()).collect(), ..Default::default() }
                 .title()
@@ -56,9 +45,5 @@ mod tests {
         assert_eq!(title(&["/scans/bunny.ply"]), "bunny.ply");
         assert_eq!(title(&["a/b.ply", "scene:sphere?points=5"]), "b.ply, scene:sphere?points=5");
         assert_eq!(title(&["b.ply", "c.ply", "d.ply"]), "b.ply and 2 more");
-        assert_eq!(
-            [0, 999, 1000, 35_947, 1_234_567].map(thousands),
-            ["0", "999", "1,000", "35,947", "1,234,567"]
-        );
     }
 }

@@ -6,7 +6,6 @@ use super::keys::Action;
 use super::open_dialog::{DialogResult, OpenDialog};
 use super::orbit::Orbit;
 use super::quality::{Quality, Workload};
-use super::scene_info::thousands;
 use super::scene_view::{SceneOrigin, SceneView, can_render};
 use super::source::Source;
 use super::viewport::Viewport;
@@ -16,6 +15,7 @@ use std::sync::Arc;
 use surfel::geometry::{Camera, ColourScale, Extent, MostDrawn, Pose};
 use surfel::settings::methods::Method;
 use surfel::settings::{Choice, Shading};
+use surfel::thousands;
 use surfel::vk::Device;
 use surfel::{RasterizerChoice, Result, Scene, Settings};
 

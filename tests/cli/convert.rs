@@ -75,9 +75,9 @@ fn weights_are_captured_once_and_render_by_surfel() {
     };
     let scene = "scene:bumpy-sphere?points=2000";
     let run = program.run(&format!("convert {scene} -o w.ply --weights 12"));
-    assert!(run.err.contains("w.ply: 2000 surfels\n"), "{}", run.err);
+    assert!(run.err.contains("w.ply: 2,000 surfels\n"), "{}", run.err);
     let seen = run.err.split_once("weights of ").unwrap().1;
-    let seen: u32 = seen.split_once(" surfels from 12 views").unwrap().0.parse().unwrap();
+    let seen: u32 = seen.split_once(" surfels from 12 views").unwrap().0.replace(',', "").parse().unwrap();
     assert!(seen > 1900, "{}", run.err);
     assert!(info(&program, "w.ply").contains("  float surfel_weight"));
     let by_surfel = "--method object-ewa --normalization surfel --size 64x64 --quiet";
@@ -155,15 +155,15 @@ fn options_apply_to_scenes() {
     let program = Program::new();
     let scene = "scene:bumpy-sphere?points=2000";
     let run = program.run(&format!("convert {scene} -o c.ply --radius 0.25 --radius-scale 2"));
-    assert_eq!(run.err, "c.ply: 2000 surfels\n");
+    assert_eq!(run.err, "c.ply: 2,000 surfels\n");
     let radius = "\nradius: 0.5 to 0.5, median 0.5\n";
     assert!(info(&program, "c.ply").contains(radius), "{}", info(&program, "c.ply"));
     let text = info(&program, &format!("{scene} --radius 0.5"));
-    assert!(text.contains(radius) && text.contains("\nnormals: 2000 given\n"), "{text}");
+    assert!(text.contains(radius) && text.contains("\nnormals: 2,000 given\n"), "{text}");
     let text = info(&program, &format!("{scene} --drop-outliers 1"));
-    assert!(!text.contains("\nsurfels: 2000\n") && !text.contains(" 0 outliers"), "{text}");
+    assert!(!text.contains("\nsurfels: 2,000\n") && !text.contains(" 0 outliers"), "{text}");
     let run = program.run(&format!("convert {scene} -o c.ply --voxel 0.25 --elliptical"));
-    assert!(run.err.contains(&format!("{scene}: 2000 points thinned to ")), "{}", run.err);
+    assert!(run.err.contains(&format!("{scene}: 2,000 points thinned to ")), "{}", run.err);
     assert!(info(&program, "c.ply").contains("\n  float ux\n"), "{}", info(&program, "c.ply"));
 }
 
@@ -172,17 +172,17 @@ fn sharp_edges_are_found_and_written() {
     let program = Program::new();
     let scene = "scene:part?points=5000&clips=off";
     let run = program.run(&format!("convert {scene} -o c.ply --sharp 40"));
-    assert!(run.err.contains(" clipped at sharp edges\nc.ply: 5000 surfels\n"), "{}", run.err);
+    assert!(run.err.contains(" clipped at sharp edges\nc.ply: 5,000 surfels\n"), "{}", run.err);
     let text = info(&program, "c.ply");
     assert!(text.contains("\n  float clip0x\n") && text.contains("\n  uchar clip_concave\n"), "{text}");
     assert!(text.contains("skipped: none"), "{text}");
     // Clip lines stay, with or without another search.
     program.run("convert c.ply -o d.ply").text();
-    assert_eq!(program.run("convert c.ply -o e.ply --sharp 90").err, "e.ply: 5000 surfels\n");
+    assert_eq!(program.run("convert c.ply -o e.ply --sharp 90").err, "e.ply: 5,000 surfels\n");
     let [c, d, e] = ["c.ply", "d.ply", "e.ply"].map(|name| std::fs::read(program.path(name)).unwrap());
     assert!(c.len() == d.len() && d == e);
     let run = program.run("convert scene:torus?points=5000 -o f.ply --sharp 40");
-    assert_eq!(run.err, "f.ply: 5000 surfels\n");
+    assert_eq!(run.err, "f.ply: 5,000 surfels\n");
     assert!(!info(&program, "f.ply").contains("clip"));
     for angle in ["0", "-40", "180", "nan", "wide"] {
         let run = program.run(&format!("convert missing.ply -o out.ply --sharp {angle}"));
@@ -276,7 +276,7 @@ fn points_on_no_surface_face_the_eye_in_written_files_too() {
         let text = info(&program, name);
         let line = text.lines().find(|line| line.starts_with("normals: ")).unwrap_or_default().to_owned();
         let facing = line.split(", ").find_map(|part| part.strip_suffix(" facing the eye"));
-        (facing.map_or(0, |count| count.parse().unwrap()), line)
+        (facing.map_or(0, |count| count.replace(',', "").parse().unwrap()), line)
     };
     let (whole, _) = count("a.xyz");
     assert!((1501..=2000).contains(&whole), "{whole}");
@@ -286,7 +286,7 @@ fn points_on_no_surface_face_the_eye_in_written_files_too() {
         );
         let (facing, line) = count(file);
         // E57 has no such flag: the points are found again.
-        let is_kept = file == "b.e57" || line.starts_with("normals: 2400 given");
+        let is_kept = file == "b.e57" || line.starts_with("normals: 2,400 given");
         assert!(facing == whole && is_kept, "{file}: {line}");
     }
     assert_eq!(count("a.xyz --no-billboards").0, 0);

@@ -98,7 +98,7 @@ fn standard_output_takes_a_png_and_nothing_else() {
     assert_eq!(run.code, 0, "{}", run.err);
     let picture = image::load_from_memory_with_format(&run.out, image::ImageFormat::Png).unwrap();
     assert_eq!((picture.width(), picture.height()), (17, 9));
-    assert!(run.err.contains("\n-: 17x9, 20000 surfels\n"), "{}", run.err);
+    assert!(run.err.contains("\n-: 17x9, 20,000 surfels\n"), "{}", run.err);
     assert!(program.files().is_empty());
 }
 
@@ -106,7 +106,7 @@ fn standard_output_takes_a_png_and_nothing_else() {
 fn a_summary_is_printed_unless_quiet() {
     let Some(program) = Program::with_device("a_summary_is_printed_unless_quiet") else { return };
     let loud = program.run(&format!("render {SPHERE} -o a.png --size 8x8 --validate"));
-    assert_eq!((loud.text(), loud.err.as_str()), ("", "a.png: 8x8, 20000 surfels\n"));
+    assert_eq!((loud.text(), loud.err.as_str()), ("", "a.png: 8x8, 20,000 surfels\n"));
     let quiet = program.run(&format!("render {SPHERE} -o a.png --size 8x8 --validate --quiet"));
     assert_eq!((quiet.text(), quiet.err.as_str()), ("", ""));
 }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use surfel::formats::{Attribute, WantedAttributes};
+use surfel::thousands;
 
 /// Name of the class of a point.
 const CLASS: &str = "classification";
@@ -66,14 +67,14 @@ fn of(attributes: &[Attribute], name: &str) -> Option<Counts> {
 pub fn text(attributes: &[Attribute]) -> String {
     let name = |class: i64| usize::try_from(class).ok().and_then(|class| CLASSES.get(class));
     let class = |(class, count): (i64, u64)| match name(class) {
-        Some(name) => format!("{count} of {class} ({name})"),
-        None => format!("{count} of {class}"),
+        Some(name) => format!("{} of {class} ({name})", thousands(count)),
+        None => format!("{} of {class}", thousands(count)),
     };
     let line = |what: &str, counts: Option<Counts>, each: &dyn Fn((i64, u64)) -> String| {
         let all: Vec<_> = counts?.into_iter().map(each).collect();
         Some(format!("{what}: {}\n", all.join(", ")))
     };
-    let number = |(number, count): (i64, u64)| format!("{count} of {number}");
+    let number = |(number, count): (i64, u64)| format!("{} of {number}", thousands(count));
     let lines = [
         line("points by class", of_classes(attributes), &class),
         line("points by return that are read", of_returns(attributes), &number),

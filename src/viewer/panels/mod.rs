@@ -17,11 +17,12 @@ mod widgets;
 
 use super::choices::Choices;
 use super::keys::{Action, BINDINGS};
-use super::scene_info::{short_name, thousands};
+use super::scene_info::short_name;
 use super::state::ViewState;
 use egui::{Button, CollapsingHeader, Label, Panel, ProgressBar, Rect, RichText, ScrollArea, Ui, pos2};
 use std::sync::Arc;
 use std::time::Duration;
+use surfel::thousands;
 use surfel::vk::Device;
 pub use ui_state::UiState;
 

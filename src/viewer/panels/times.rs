@@ -1,11 +1,11 @@
 //! Times panel: GPU times of the passes of the last frames, and counts of culled surfels.
 
 use crate::viewer::quality::{COARSEST_LOD, MIN_SCALE};
-use crate::viewer::scene_info::thousands;
 use crate::viewer::split_view::Reports;
 use egui::{Align2, Color32, FontId, Grid, Pos2, Rect, Sense, Ui, vec2};
 use std::collections::VecDeque;
 use surfel::settings::Choice;
+use surfel::thousands;
 use surfel::{FrameReport, Settings, SplatCounts};
 
 /// Number of frames in the plot.
