@@ -1,5 +1,6 @@
 //! Settings of a frame, shared by the Vulkan methods and the float64 reference.
 
+mod check;
 mod choice;
 pub mod methods;
 mod outputs;
@@ -188,108 +189,6 @@ impl Settings {
         let shading = if self.shading == Shading::Edl { Shading::Colour } else { self.shading };
         let edges = Edges::Nearest;
         Self { background: None, pixel_filter: 0.0, cull, edges, shading, ao: 0.0, ..self.clone() }
-    }
-
-    /// Returns an error if the scene has lines or triangles, as `there` tells, and the method draws splats only.
-    pub fn check_primitives(&self, there: bool) -> Result<()> {
-        if there && self.pull_push.is_none() {
-            Err(Error::Usage(
-                "only pull-push and pull-push-paper draw lines and triangles: choose one of these methods, or leave them out".into(),
-            ))
-        } else {
-            Ok(())
-        }
-    }
-
-    /// Returns an error if point ids are requested of a method that blends several points.
-    pub fn check_outputs(&self, outputs: Outputs) -> Result<()> {
-        if outputs.id && self.pull_push.is_none() {
-            Err(Error::Usage(
-                "only pull-push and pull-push-paper have point ids, as splats are summed: choose one of these methods, or leave the ids out"
-                    .into(),
-            ))
-        } else {
-            Ok(())
-        }
-    }
-
-    /// Validates the settings.
-    pub fn check(&self) -> Result<()> {
-        if self.pull_push.is_some() && self.splatting != Splatting::default() {
-            return Err(Error::Usage(
-                "pull-push has no splats: leave out footprint, kernel, filter, visibility, normalization and shade".into(),
-            ));
-        }
-        self.pull_push.map_or(Ok(()), PullPush::check)?;
-        self.splatting.check()?;
-        let positive = |name: &str, value: f32| {
-            if value.is_finite() && value > 0.0 {
-                Ok(())
-            } else {
-                Err(Error::Usage(format!("{name} is {value}: give a finite number above 0")))
-            }
-        };
-        if !Self::CUTOFFS.contains(&self.cutoff) {
-            let (least, most) = (Self::CUTOFFS.start(), Self::CUTOFFS.end());
-            return Err(Error::Usage(format!(
-                "the cut-off is {}: give a number of standard deviations from {least} to {most}",
-                self.cutoff
-            )));
-        }
-        positive("epsilon", self.epsilon)?;
-        if !(0.0..=Self::MOST_LOWPASS).contains(&self.lowpass) {
-            return Err(Error::Usage(format!(
-                "the low-pass variance is {}: give a number of px² from 0 to {}",
-                self.lowpass,
-                Self::MOST_LOWPASS
-            )));
-        }
-        if !(0.0..=Self::MOST_PIXEL_FILTER).contains(&self.pixel_filter) {
-            return Err(Error::Usage(format!(
-                "the variance of the pixel filter is {}: give a number of px² from 0 to {}",
-                self.pixel_filter,
-                Self::MOST_PIXEL_FILTER
-            )));
-        }
-        if !(0.0..=Self::MOST_EDL).contains(&self.edl) {
-            return Err(Error::Usage(format!(
-                "the strength of eye-dome lighting is {}: give a number from 0 to {}",
-                self.edl,
-                Self::MOST_EDL
-            )));
-        }
-        if !(0.0..=Self::MOST_AO).contains(&self.ao) {
-            return Err(Error::Usage(format!(
-                "the strength of ambient occlusion is {}: give a number from 0 to {}",
-                self.ao,
-                Self::MOST_AO
-            )));
-        }
-        if !Self::POINT_SIZES.contains(&self.point_size) {
-            let (least, most) = (Self::POINT_SIZES.start(), Self::POINT_SIZES.end());
-            return Err(Error::Usage(format!(
-                "the size of points is {}: give a number of px from {least} to {most}",
-                self.point_size
-            )));
-        }
-        if !(0.0..=Self::MOST_LOD).contains(&self.lod) {
-            return Err(Error::Usage(format!(
-                "the level of detail is {}: give a number of px from 0 to {}",
-                self.lod,
-                Self::MOST_LOD
-            )));
-        }
-        if self.max_points == Some(0) {
-            return Err(Error::Usage("at most 0 points may be drawn: give a number above 0".into()));
-        }
-        self.lighting.check()?;
-        if self.background.is_some_and(|colour| !colour.iter().all(|channel| channel.is_finite())) {
-            return Err(Error::Usage(format!(
-                "the background is {:?}: give finite numbers",
-                self.background
-            )));
-        }
-        Ok(())
     }
 }
 
