@@ -239,16 +239,18 @@ fn coarser_levels_are_points_of_the_same_size() {
     let scene = Scene::upload(&device, &levels).unwrap();
     let fine = settings(5.0);
     let coarse = Settings { lod: 60.0, ..fine.clone() };
+    // Pixels of a circle of 5 px, at most, wherever its centre is.
+    let most = 25;
     for rasterizer in BOTH {
-        let [all, some] = [&fine, &coarse].map(|settings| {
-            renderers
-                .render_instances(&scene, &perspective(), settings, options(rasterizer))
-                .1
-                .counts
-                .unwrap()
-                .drawn
+        let [(_, all), (picture, some)] = [&fine, &coarse].map(|settings| {
+            let (picture, report) =
+                renderers.render_instances(&scene, &perspective(), settings, options(rasterizer));
+            (picture, report.counts.unwrap().drawn as usize)
         });
+        let covered = picture.colour.iter().filter(|colour| colour[3] > 0.0).count();
+        println!("{rasterizer:?}: {some} of {all} points, {covered} px");
         assert!(some > 0 && 4 * some < all, "{some} of {all}");
+        assert!(covered > 0 && covered <= most * some, "{covered} px of {some} points");
     }
     assert_silent(&device);
 }
