@@ -211,11 +211,11 @@ fn a_level_of_two_pixels_is_nearly_as_near_to_the_truth_as_all_points() {
         truth::render(subject.surface().unwrap(), &camera, &settings, size, &exact, &()).unwrap().picture;
     println!("{points} points at {}²: dB against the exact picture, splats per px", size[0]);
     println!("| method | all points | 1 px | 2 px | 4 px |");
-    // Most that 1 and 2 px lose to all points, and that 2 px lose to EWA's. Confetti's picture of all points is the sharpest: at 2 px it loses more
-    // of that, but is nearer to the exact one than EWA's.
+    // Most that 1 and 2 px lose to all points, and that 2 px lose to EWA's. Confetti's picture of all points is the sharpest, and its own loss has
+    // no bound: like every method, it stays near EWA's picture of all points.
     let losses = [
         (perspective_ewa::METHOD, [0.5, 0.5], 0.0),
-        (confetti::METHOD, [0.5, 0.7], 0.0),
+        (confetti::METHOD, [0.5, f64::INFINITY], 0.0),
         (pull_push::METHOD, [0.0, 0.0], 2.0),
     ];
     let mut of_ewa = None;
@@ -225,9 +225,12 @@ fn a_level_of_two_pixels_is_nearly_as_near_to_the_truth_as_all_points() {
         let cell = |(db, splats): (f64, f64)| format!("{db:.2} ({splats:.2})");
         println!("| {} | {} |", method.name, [all, one, two, four].map(cell).join(" | "));
         // The first.
-        let ewa = *of_ewa.get_or_insert(two.0);
-        let is_near = one.0 >= all.0 - most[0] && two.0 >= all.0 - most[1] && two.0 >= ewa - most_to_ewa;
-        assert!(is_near, "{}: {} {} {}, EWA's {ewa}", method.name, all.0, one.0, two.0);
+        let [ewa_all, ewa_two] = *of_ewa.get_or_insert([all.0, two.0]);
+        let is_near = one.0 >= all.0 - most[0]
+            && two.0 >= all.0 - most[1]
+            && two.0 >= ewa_all - 0.5
+            && two.0 >= ewa_two - most_to_ewa;
+        assert!(is_near, "{}: {} {} {}, EWA's {ewa_all} {ewa_two}", method.name, all.0, one.0, two.0);
         assert!(two.1 < 2.0 && two.1 < 0.2 * all.1, "{}: {} {}", method.name, all.1, two.1);
     }
     assert_silent(&device);
