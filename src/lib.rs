@@ -65,7 +65,6 @@ pub mod picture;
 mod progress;
 pub mod scene;
 pub mod settings;
-mod thousands;
 pub mod verify;
 pub mod vk;
 
@@ -77,7 +76,6 @@ pub use frame::{FrameReport, PyramidLevel, PyramidSample, RenderOptions, Rendere
 pub use glam;
 
 pub use picture::Picture;
-pub use progress::Progress;
+pub use progress::{Progress, thousands};
 pub use scene::{Instance, Instances, Scene};
 pub use settings::{Outputs, Precision, Rasterizer, RasterizerChoice, RasterizerReason, Settings};
-pub use thousands::thousands;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 /// The modules, layer by layer: what is in one may use its own layer's module and those of layers before it.
 const LAYERS: [&[&str]; 17] = [
     &["error"],
-    &["progress", "picture", "thousands"],
+    &["progress", "picture"],
     &["vk"],
     &["geometry"],
     &["settings"],
