@@ -7,6 +7,7 @@ use base64::prelude::{BASE64_STANDARD, Engine as _};
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::sync::Arc;
 use std::time::Duration;
 use surfel::bench::Suite;
 use surfel::bench::ceilings::{self, Sizes};
@@ -23,7 +24,7 @@ use surfel::frame::times::Interval;
 use surfel::settings::methods::Method;
 use surfel::settings::{Settings, Shading};
 use surfel::verify::truth;
-use surfel::vk::DeviceLimits;
+use surfel::vk::{Device, DeviceLimits};
 
 const EFFORT: Effort = Effort { warmup: 1, least: 3, most: 3, budget: Duration::ZERO, until: None };
 const TRUTH: truth::Options = truth::Options {
@@ -50,19 +51,15 @@ fn plan(scene: &str, points: u64, side: u32) -> Plan {
     }
 }
 
+/// Options of a runner on this device, if any.
+fn options(device: Option<&Arc<Device>>) -> Options {
+    Options { device: device.cloned(), cache: None, truth: TRUTH, effort: EFFORT, ..Default::default() }
+}
+
 /// A runner on a device with validation; `None`, with a message, without a device.
 fn runner(subjects: Vec<Rc<Subject>>) -> Option<Runner> {
     let device = device(DeviceLimits::default())?;
-    Some(Runner::new(
-        Options {
-            device: Some(device.clone()),
-            cache: None,
-            truth: TRUTH,
-            effort: EFFORT,
-            ..Default::default()
-        },
-        subjects,
-    ))
+    Some(Runner::new(options(Some(&device)), subjects))
 }
 
 fn rmse(run: &Run) -> f64 {
@@ -72,14 +69,7 @@ fn rmse(run: &Run) -> f64 {
 #[test]
 fn a_run_has_its_time_its_error_and_the_terms_of_that() {
     let Some(device) = device(DeviceLimits::default()) else { return };
-    let options = Options {
-        device: Some(device.clone()),
-        cache: None,
-        truth: TRUTH,
-        effort: EFFORT,
-        ..Default::default()
-    };
-    let mut runner = Runner::new(options, Vec::new());
+    let mut runner = Runner::new(options(Some(&device)), Vec::new());
     let measurements = Measurements {
         time: true,
         error: true,
@@ -173,8 +163,7 @@ fn without_the_low_pass_the_horizon_aliases_and_the_error_grows() {
 
 #[test]
 fn without_a_device_a_run_is_refused_with_a_reason() {
-    let options = Options { device: None, cache: None, truth: TRUTH, effort: EFFORT, ..Default::default() };
-    let run = Runner::new(options, Vec::new()).run(&plan("scene:torus", 1000, 32)).unwrap();
+    let run = Runner::new(options(None), Vec::new()).run(&plan("scene:torus", 1000, 32)).unwrap();
     assert!(run.refused.unwrap().contains("no usable Vulkan device"));
     assert!(run.time.is_none() && run.error.is_none());
 }
@@ -183,14 +172,7 @@ fn without_a_device_a_run_is_refused_with_a_reason() {
 fn an_unsupported_run_is_refused_and_the_next_one_runs() {
     let limits = DeviceLimits { max_image_side: Some(64), ..Default::default() };
     let Some(device) = device(limits) else { return };
-    let options = Options {
-        device: Some(device.clone()),
-        cache: None,
-        truth: TRUTH,
-        effort: EFFORT,
-        ..Default::default()
-    };
-    let mut runner = Runner::new(options, Vec::new());
+    let mut runner = Runner::new(options(Some(&device)), Vec::new());
     let large = runner.run(&plan("scene:torus", 1000, 128)).unwrap();
     assert!(large.refused.is_some_and(|why| why.contains("128")), "the size is named");
     let small = runner.run(&plan("scene:torus", 1000, 64)).unwrap();
