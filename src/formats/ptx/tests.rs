@@ -80,7 +80,7 @@ fn many_lines_are_read_in_pieces() {
 #[test]
 fn many_scans_take_no_longer_than_their_lines() {
     let text = (identity(1, 1) + "1 2 3\n").repeat(30_000);
-    let start = std::time::Instant::now();
+    let start = cpu_time::ThreadTime::now();
     assert_eq!(read(&text).unwrap().report.points, 30_000);
     assert!(start.elapsed() < std::time::Duration::from_secs(4), "{:?}", start.elapsed());
 }
