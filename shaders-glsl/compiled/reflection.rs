@@ -35,8 +35,8 @@ pub static ATTRIBUTE_VERTEX: Module = Module {
     name: "attribute_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("attribute_vertex.spv"),
-    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 22, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::WEIGHTS, false)],
+    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 22, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70, 78],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::WEIGHTS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -65,8 +65,8 @@ pub static ATTRIBUTE_CLIP_LINES_VERTEX: Module = Module {
     name: "attribute_clip_lines_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("attribute_clip_lines_vertex.spv"),
-    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 22, 23, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false), (&resource::WEIGHTS, false)],
+    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 22, 23, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70, 78],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false), (&resource::WEIGHTS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -345,8 +345,8 @@ pub static FETCH_COMPUTE: Module = Module {
     name: "fetch_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_compute.spv"),
-    constants: &[0, 1, 5, 12, 13, 17, 22, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73],
-    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
+    constants: &[0, 1, 5, 12, 13, 17, 22, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73, 78],
+    resources: &[(&resource::FRAME, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -375,8 +375,8 @@ pub static FETCH_RASTER_POINTS_COMPUTE: Module = Module {
     name: "fetch_raster_points_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_raster_points_compute.spv"),
-    constants: &[0, 1, 5, 12, 13, 17, 22, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73],
-    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST_ID, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
+    constants: &[0, 1, 5, 12, 13, 17, 22, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73, 78],
+    resources: &[(&resource::FRAME, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST_ID, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -425,8 +425,8 @@ pub static FOOTPRINT_COMPUTE: Module = Module {
     name: "footprint_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("footprint_compute.spv"),
-    constants: &[0, 1, 2, 12, 13, 14, 15, 16, 21, 22, 23, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 67, 68, 70, 73],
-    resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::COUNTS, true)],
+    constants: &[0, 1, 2, 12, 13, 14, 15, 16, 21, 22, 23, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 67, 68, 70, 73, 78],
+    resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -435,8 +435,8 @@ pub static FOOTPRINT_TILES_COMPUTE: Module = Module {
     name: "footprint_tiles_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("footprint_tiles_compute.spv"),
-    constants: &[0, 1, 2, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 21, 22, 23, 26, 27, 37, 45, 46, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 67, 68, 70, 73],
-    resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::SPLAT_ATTRIBUTES, true), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::WEIGHTS, false), (&resource::SPLAT_BOXES, true), (&resource::ORDER, false), (&resource::VISIBLE_CLUSTERS, false), (&resource::COUNTS, true)],
+    constants: &[0, 1, 2, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 21, 22, 23, 26, 27, 37, 45, 46, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 67, 68, 70, 73, 78],
+    resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::SPLAT_ATTRIBUTES, true), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::WEIGHTS, false), (&resource::SPLAT_BOXES, true), (&resource::ORDER, false), (&resource::VISIBLE_CLUSTERS, false), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -445,8 +445,8 @@ pub static NEAREST_VERTEX: Module = Module {
     name: "nearest_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("nearest_vertex.spv"),
-    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 22, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false)],
+    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 22, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70, 78],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -475,8 +475,8 @@ pub static NEAREST_COVERAGE_VERTEX: Module = Module {
     name: "nearest_coverage_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("nearest_coverage_vertex.spv"),
-    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 22, 23, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
+    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 22, 23, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70, 78],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -495,8 +495,8 @@ pub static NEAREST_CLIP_LINES_VERTEX: Module = Module {
     name: "nearest_clip_lines_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("nearest_clip_lines_vertex.spv"),
-    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 22, 23, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
+    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 22, 23, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70, 78],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -655,8 +655,8 @@ pub static ORDER_COMPUTE: Module = Module {
     name: "order_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("order_compute.spv"),
-    constants: &[50, 51],
-    resources: &[(&resource::POSITIONS, false), (&resource::ORDER, true)],
+    constants: &[50, 51, 78],
+    resources: &[(&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::ORDER, true)],
     push: size_of::<layout::OrderStep>() as u32,
 };
 
@@ -685,8 +685,8 @@ pub static POINTS_VERTEX: Module = Module {
     name: "points_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("points_vertex.spv"),
-    constants: &[0, 1, 12, 13, 22, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73],
-    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false)],
+    constants: &[0, 1, 12, 13, 22, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73, 78],
+    resources: &[(&resource::FRAME, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -705,8 +705,8 @@ pub static PROJECT_COMPUTE: Module = Module {
     name: "project_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("project_compute.spv"),
-    constants: &[0, 1, 2, 12, 13, 22, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 73],
-    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::VISIBLE_CLUSTERS, false), (&resource::NEAREST, true), (&resource::COUNTS, true)],
+    constants: &[0, 1, 2, 12, 13, 22, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 73, 78],
+    resources: &[(&resource::FRAME, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::VISIBLE_CLUSTERS, false), (&resource::NEAREST, true), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -745,8 +745,8 @@ pub static PROJECT_COUNT_ONLY_COMPUTE: Module = Module {
     name: "project_count_only_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("project_count_only_compute.spv"),
-    constants: &[0, 1, 2, 12, 13, 22, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73],
-    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::COUNTS, true)],
+    constants: &[0, 1, 2, 12, 13, 22, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73, 78],
+    resources: &[(&resource::FRAME, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -982,7 +982,7 @@ pub mod constant {
     pub const BOX_WEIGHTS: u32 = 65;
     /// `CLIPS`, first in `shaders-glsl/attribute.glsl`.
     pub const CLIPS: u32 = 23;
-    /// `CLUSTERS`, first in `shaders-glsl/boxes.glsl`.
+    /// `CLUSTERS`, first in `shaders-glsl/attribute.glsl`.
     pub const CLUSTERS: u32 = 63;
     /// `COLOURS`, first in `shaders-glsl/attribute.glsl`.
     pub const COLOURS: u32 = 5;
@@ -1042,6 +1042,8 @@ pub mod constant {
     pub const LARGE_TRIANGLES: u32 = 30;
     /// `LATE_BACKGROUND`, first in `shaders-glsl/ambient.glsl`.
     pub const LATE_BACKGROUND: u32 = 76;
+    /// `LATTICES`, first in `shaders-glsl/attribute.glsl`.
+    pub const LATTICES: u32 = 78;
     /// `LIGHTS`, first in `shaders-glsl/attribute.glsl`.
     pub const LIGHTS: u32 = 7;
     /// `MATERIALS`, first in `shaders-glsl/shade.glsl`.
@@ -1279,6 +1281,24 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
+    /// `LatticePositions`, first in `shaders-glsl/attribute.glsl`.
+    pub static LATTICE_POSITIONS: Resource = Resource {
+        name: "LatticePositions",
+        set: 0,
+        binding: 2,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
+    };
+
+    /// `Lattices`, first in `shaders-glsl/attribute.glsl`.
+    pub static LATTICES: Resource = Resource {
+        name: "Lattices",
+        set: 0,
+        binding: 4,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
+    };
+
     /// `LineDirections`, first in `shaders-glsl/fetch.glsl`.
     pub static LINE_DIRECTIONS: Resource = Resource {
         name: "LineDirections",
@@ -1351,7 +1371,7 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
     };
 
-    /// `Radii`, first in `shaders-glsl/fetch.glsl`.
+    /// `Radii`, first in `shaders-glsl/attribute.glsl`.
     pub static RADII: Resource = Resource {
         name: "Radii",
         set: 0,

@@ -1,6 +1,8 @@
 // Streams of the bound chunk's surfels, in words of the bound ranges. Uploaded streams are packed, as the default constants describe; the
-// buffers of a host have other layouts, and unvalidated values (UNCHECKED).
+// buffers of a host have other layouts, and unvalidated values (UNCHECKED). Quantized surfels (LATTICES) have integer coordinates on the
+// lattice of their cluster, half-float radii in its steps beside them, and octahedral normals: src/geometry/quantized.
 
+#include "lib/cluster.glsl"
 #include "lib/colour_streams.glsl"
 
 layout(constant_id = 12) const bool ELLIPSES = false;
@@ -19,26 +21,54 @@ layout(constant_id = 59) const uint ELLIPSE_OFFSET = 0;
 layout(constant_id = 60) const uint ELLIPSE_STRIDE = 4;
 layout(constant_id = 61) const bool UNCHECKED = false;   // surfels are not validated
 layout(constant_id = 62) const uint STORED_COLOURS = 0;  // colour format of the scene, also if the frame reads no colours
+layout(constant_id = 78) const bool LATTICES = false;    // surfels are quantized
 
 layout(set = 0, binding = 2, std430) readonly buffer Positions { float positions[]; };
 layout(set = 0, binding = 3, std430) readonly buffer Normals { uint normals[]; };
 layout(set = 0, binding = 4, std430) readonly buffer Radii { float radii[]; }; // 0: invalid; TWO_SIDED: negative for two-sided surfels
+// LATTICES, in place of positions and radii; the latter by cluster: the corner and the step, or the index of its exact surfels and 0. Exact
+// surfels are positions and radii.
+layout(set = 0, binding = 2, std430) readonly buffer LatticePositions { uvec2 lattice_positions[]; };
+layout(set = 0, binding = 4, std430) readonly buffer Lattices { uvec4 lattices[]; };
 layout(set = 0, binding = 5, std430) readonly buffer Colours { uint colours[]; };
 layout(set = 0, binding = 8, std430) readonly buffer Ellipses { vec4 ellipses[]; }; // major axis, aspect
-layout(set = 0, binding = 8, std430) readonly buffer EllipseWords { float ellipse_words[]; };
+layout(set = 0, binding = 8, std430) readonly buffer EllipseWords { uint ellipse_words[]; };
 
-const uint FLOAT_NORMALS = 0, SNORM8_NORMALS = 1, SNORM16_NORMALS = 2, HALF_NORMALS = 3;
+const uint FLOAT_NORMALS = 0, SNORM8_NORMALS = 1, SNORM16_NORMALS = 2, HALF_NORMALS = 3, OCTAHEDRAL_NORMALS = 4;
+const uint NO_NORMAL = 0x80008000u; // octahedral code of a billboard
 
 DEFINE_COLOURS(stored_colour, STORED_COLOURS, colours, COLOUR_OFFSET, COLOUR_STRIDE)
 
+// Position and radius of a quantized surfel. A step is a power of two and the corner a multiple of it, so that positions are exact.
+vec4 lattice_surfel(uint i) {
+    uvec4 lattice = lattices[i / CLUSTER_SIZE];
+    if (lattice.w == 0u) return uintBitsToFloat(lattices[lattice.x + i % CLUSTER_SIZE]);
+    uvec2 words = lattice_positions[i];
+    vec4 steps = vec4(words.x & 0xffffu, words.x >> 16, words.y & 0xffffu, unpackHalf2x16(words.y).y);
+    return vec4(uintBitsToFloat(lattice.xyz), 0.0) + uintBitsToFloat(lattice.w) * steps;
+}
+
 vec3 position_of(uint i) {
+    if (LATTICES) return lattice_surfel(i).xyz;
     uint k = POSITION_OFFSET + POSITION_STRIDE * i;
     return vec3(positions[k], positions[k + 1], positions[k + 2]);
+}
+
+// Direction of a point of the octahedron |x| + |y| + |z| = most that is unfolded to a square (Cigolle et al., *A Survey of Efficient
+// Representations for Independent Unit Vectors*, 2014). In integers, so that all devices find the same.
+vec3 octahedral_direction(ivec2 code, int most) {
+    int z = most - abs(code.x) - abs(code.y);
+    ivec2 signs = ivec2(code.x >= 0 ? 1 : -1, code.y >= 0 ? 1 : -1);
+    return vec3(z >= 0 ? code : signs * (most - abs(code.yx)), z);
 }
 
 // As stored: packed formats are not unit vectors.
 vec3 stored_normal(uint i) {
     uint k = NORMAL_OFFSET + NORMAL_STRIDE * i;
+    if (NORMALS == OCTAHEDRAL_NORMALS) {
+        int code = int(normals[k]);
+        return normals[k] == NO_NORMAL ? vec3(0.0) : octahedral_direction(ivec2(bitfieldExtract(code, 0, 16), code >> 16), 32767);
+    }
     if (NORMALS == SNORM8_NORMALS) return unpackSnorm4x8(normals[k]).xyz;
     if (NORMALS == SNORM16_NORMALS) return vec3(unpackSnorm2x16(normals[k]), unpackSnorm2x16(normals[k + 1]).x);
     if (NORMALS == HALF_NORMALS) return vec3(unpackHalf2x16(normals[k]), unpackHalf2x16(normals[k + 1]).x);
@@ -47,7 +77,7 @@ vec3 stored_normal(uint i) {
 
 // Curvature of src/geometry/curvature.rs, which follows the normal.
 uint curvature_of(uint i) {
-    return normals[NORMAL_OFFSET + NORMAL_STRIDE * i + 3];
+    return normals[NORMAL_OFFSET + NORMAL_STRIDE * i + (NORMALS == OCTAHEDRAL_NORMALS ? 1 : 3)];
 }
 
 // Normal curvature, 1 / unit, in the direction of a tangent: above 0 where the surface bends away from the normal (Euler's formula).
@@ -63,6 +93,7 @@ bool is_billboard(uint i) {
 }
 
 float stored_radius(uint i) {
+    if (LATTICES) return lattice_surfel(i).w;
     return radii[RADIUS_OFFSET + RADIUS_STRIDE * i];
 }
 
@@ -74,11 +105,16 @@ bool is_two_sided(uint i) {
     return TWO_SIDED && stored_radius(i) < 0.0;
 }
 
-// Major axis of surfel i's disc, and its aspect.
+// Direction of the major axis of surfel i's disc, a unit vector but for quantized surfels, and its aspect.
 vec4 ellipse_of(uint i) {
+    if (LATTICES) {
+        int word = int(ellipse_words[i]);
+        ivec2 axis = ivec2(bitfieldExtract(word, 0, 11), bitfieldExtract(word, 11, 11));
+        return vec4(octahedral_direction(axis, 1023), float(ellipse_words[i] >> 22) / 1023.0);
+    }
     if (ELLIPSE_STRIDE == 4 && ELLIPSE_OFFSET % 4 == 0) return ellipses[i + ELLIPSE_OFFSET / 4];
     uint k = ELLIPSE_OFFSET + ELLIPSE_STRIDE * i;
-    return vec4(ellipse_words[k], ellipse_words[k + 1], ellipse_words[k + 2], ellipse_words[k + 3]);
+    return uintBitsToFloat(uvec4(ellipse_words[k], ellipse_words[k + 1], ellipse_words[k + 2], ellipse_words[k + 3]));
 }
 
 const float LARGEST_VALUE = 1e15;

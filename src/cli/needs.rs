@@ -77,6 +77,8 @@ fn cases() -> Vec<Case> {
             streams.unordered = true;
             streams.clusters = false;
         }),
+        coloured(perspective_ewa::METHOD)
+            .of("coloured circles, quantized", |streams| *streams = streams.quantized()),
         coloured(object_ewa::METHOD),
         coloured(object_ewa::METHOD)
             .of("coloured circles with weights", |streams| streams.weights = Some(false))

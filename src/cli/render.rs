@@ -9,7 +9,7 @@ use surfel::estimate::Estimate;
 use surfel::formats::colour_bar::ColourBar;
 use surfel::formats::image::{Encoded, Output, write};
 use surfel::frame::times::Times;
-use surfel::geometry::{Camera, Extent, Levels, Model, Parts};
+use surfel::geometry::{Camera, Extent, Levels, Model, Parts, SurfelFormat};
 use surfel::load::{Coloured, Colouring, LoadOptions, SuggestedShading, Uncoloured, load};
 use surfel::settings::Shading;
 use surfel::settings::methods::{Method, pull_push};
@@ -111,7 +111,7 @@ pub fn run(args: &Render) -> Result<()> {
     let levels = (settings.lod > 0.0 || settings.max_points.is_some())
         .then(|| Levels::of(std::mem::take(&mut loaded.model.surfels)))
         .transpose()?;
-    let scene = parts(&loaded.model, levels.as_ref());
+    let scene = parts(&loaded.model, levels.as_ref(), SurfelFormat::quantized(args.backend.quantize));
     let (layers, size, frames, progress) = (args.outputs(), args.size, args.frames, &*bars);
     let split = args.times == Some(PassTimes::Split);
     let task = Task { scene, method, camera, settings, size, layers, frames, split, progress };
@@ -264,9 +264,10 @@ fn check_outputs(args: &Render, out: &Output) -> Result<()> {
 }
 
 /// The scene, with its levels of detail if there are any.
-fn parts<'a>(model: &'a Model, levels: Option<&'a Levels>) -> Parts<'a> {
+fn parts<'a>(model: &'a Model, levels: Option<&'a Levels>, format: SurfelFormat) -> Parts<'a> {
+    let model = Parts { format, ..model.into() };
     match levels {
-        Some(Levels { surfels, table }) => Parts { surfels, levels: Some(table), ..model.into() },
-        None => model.into(),
+        Some(Levels { surfels, table }) => Parts { surfels, levels: Some(table), ..model },
+        None => model,
     }
 }

@@ -12,7 +12,7 @@ use std::ffi::OsString;
 use std::sync::Arc;
 use std::time::Instant;
 use surfel::estimate::Estimate;
-use surfel::geometry::{Colours, Extent, Model};
+use surfel::geometry::{Colours, Extent, Model, SurfelFormat};
 use surfel::load::{
     Colouring, Listener, LoadOptions, Preview, SuggestedShading, Suggestion, Uncoloured, load, scene,
 };
@@ -73,6 +73,7 @@ fn loader(args: &View, method: Option<Method>, up: Option<DVec3>) -> Result<view
         map: args.colours.color_map,
         range: by.range,
     });
+    let format = SurfelFormat::quantized(args.quantize);
     let points = method.is_some_and(|method| args.settings(&method).draws_points());
     let options = LoadOptions {
         columns: args.points.columns.clone(),
@@ -96,7 +97,7 @@ fn loader(args: &View, method: Option<Method>, up: Option<DVec3>) -> Result<view
             let suggested =
                 suggestion.map(|Suggestion { name, map }| viewer::ColourBy { name, map, range: None });
             let colour_by = colour_by.clone().or(suggested);
-            Ok(Loaded { colour_by, info, up, ..Loaded::new(model, method) })
+            Ok(Loaded { colour_by, format, info, up, ..Loaded::new(model, method) })
         };
         let listener = WindowListener { window, loaded: &loaded, quiet: reader.quiet };
         let inputs = load(names, &reader.options, &listener)?;

@@ -430,9 +430,11 @@ impl SceneVariant {
         let optional: &[(&'static Resource, bool)] = match scope {
             Scope::View => return frame.view_resources(),
             Scope::Surfels => &[
-                (&resource::POSITIONS, true),
+                (&resource::POSITIONS, !self.layout.is_quantized()),
+                (&resource::LATTICE_POSITIONS, self.layout.is_quantized()),
                 (&resource::NORMALS, true),
-                (&resource::RADII, true),
+                (&resource::RADII, !self.layout.is_quantized()),
+                (&resource::LATTICES, self.layout.is_quantized()),
                 (&resource::COLOURS, self.stored.colours),
                 (&resource::ELLIPSES, self.ellipses),
                 (&resource::WEIGHTS, self.stored.weights),

@@ -32,8 +32,20 @@ impl Curvature {
         let largest = (largest.to_bits() + 0x8000).min(f32::MAX.to_bits()) & 0xffff_0000;
         let ratio = ((mean - half) / (mean + half)).clamp(-1.0, 1.0);
         let angle = 0.5 * off.atan2(0.5 * (x - y));
-        let byte = |value: f64| u32::from(((ONE * value).round() as i8).cast_unsigned());
-        Self(largest | byte(angle / FRAC_PI_2) << 8 | byte(ratio))
+        Self(largest | code(angle / FRAC_PI_2) << 8 | code(ratio))
+    }
+
+    /// The same curvature at a normal `to` that is nearly `from`, both unit vectors: [`tangents`] of both may differ.
+    pub(crate) fn turned(self, from: DVec3, to: DVec3) -> Self {
+        let ([x, y], direction) = (tangents(from), self.direction());
+        let direction = x * direction.x + y * direction.y;
+        let [x, y] = tangents(to).map(|axis| axis.dot(direction));
+        // Either end of the direction.
+        let angle = (y * x.signum()).atan2(x.abs()) / FRAC_PI_2;
+        if self.0 == 0 || (ONE * (angle - self.byte(1))).abs() < 0.75 {
+            return self;
+        }
+        Self(self.0 & 0xffff_00ff | code(angle) << 8)
     }
 
     /// The larger principal curvature.
@@ -60,6 +72,11 @@ impl Curvature {
     fn byte(self, index: usize) -> f64 {
         f64::from(self.0.to_le_bytes()[index].cast_signed()).max(-ONE) / ONE
     }
+}
+
+/// A value from −1 to 1 in a byte.
+fn code(value: f64) -> u32 {
+    u32::from(((ONE * value).round() as i8).cast_unsigned())
 }
 
 /// Basis of the tangent plane of a unit normal: [`first_axis`] and normal × first axis.

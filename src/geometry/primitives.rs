@@ -1,6 +1,6 @@
 //! Lines and triangles, which pull–push draws beside surfels.
 
-use super::{Bounds, Cloud, Colours, LevelTable, Levels, Materials, MipMap, Surfels, Texture};
+use super::{Bounds, Cloud, Colours, LevelTable, Levels, Materials, MipMap, SurfelFormat, Surfels, Texture};
 use crate::error::{Error, Result};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
@@ -51,24 +51,26 @@ pub struct Parts<'a> {
     pub primitives: Option<&'a Primitives>,
     /// Which of the surfels stand for others from afar: see [`Levels`].
     pub levels: Option<&'a LevelTable>,
+    /// Format in which scenes store the surfels.
+    pub format: SurfelFormat,
 }
 
 impl<'a> From<&'a Surfels> for Parts<'a> {
     fn from(surfels: &'a Surfels) -> Self {
-        Self { surfels, primitives: None, levels: None }
+        Self { surfels, primitives: None, levels: None, format: SurfelFormat::default() }
     }
 }
 
 impl<'a> From<&'a Model> for Parts<'a> {
     fn from(model: &'a Model) -> Self {
         let primitives = (!model.primitives.is_empty()).then_some(&model.primitives);
-        Self { surfels: &model.surfels, primitives, levels: None }
+        Self { surfels: &model.surfels, primitives, levels: None, format: SurfelFormat::default() }
     }
 }
 
 impl<'a> From<&'a Levels> for Parts<'a> {
     fn from(levels: &'a Levels) -> Self {
-        Self { surfels: &levels.surfels, primitives: None, levels: Some(&levels.table) }
+        Self { levels: Some(&levels.table), ..(&levels.surfels).into() }
     }
 }
 

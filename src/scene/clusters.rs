@@ -3,15 +3,15 @@
 use super::Changes;
 use super::groups::{self, GroupBounds};
 use crate::error::Result;
-use crate::geometry::Surfels;
+use crate::geometry::{self, Quantized, Surfels};
 use crate::vk::shaders::layout::Cluster;
 use crate::vk::{Buffer, Uploads};
 use glam::Vec3;
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Consecutive surfels of a cluster: CLUSTER_SIZE of `lib/cluster.glsl`.
-pub(crate) const CLUSTER: u64 = 64;
+/// Consecutive surfels of a cluster.
+pub(crate) const CLUSTER: u64 = geometry::CLUSTER as u64;
 
 /// Bytes of the bounds of so many surfels' clusters.
 pub(super) fn bytes(surfels: u64) -> u64 {
@@ -61,8 +61,13 @@ const ROUNDING: f32 = 1e-5;
 const NO_CONE: f32 = 2.0;
 
 impl Clusters {
-    /// Bounds of the clusters of `surfels`, which have these chunks.
-    pub fn new(uploads: &Uploads<'_>, surfels: &Surfels, chunks: &[Range<u64>]) -> Result<Self> {
+    /// Bounds of the clusters of `surfels`, which have these chunks, as floats or as these codes.
+    pub fn new(
+        uploads: &Uploads<'_>,
+        surfels: &Surfels,
+        codes: Option<&Quantized>,
+        chunks: &[Range<u64>],
+    ) -> Result<Self> {
         let count = surfels.len() as u64;
         let all = Changes {
             positions: Some(&surfels.positions),
@@ -72,7 +77,10 @@ impl Clusters {
             ..Changes::default()
         };
         let clusters: Vec<_> = (0..count.div_ceil(CLUSTER))
-            .map(|index| ClusterBounds::NONE.with(0..count, &all, range(index, count)))
+            .map(|index| match codes {
+                None => ClusterBounds::NONE.with(0..count, &all, range(index, count)),
+                Some(codes) => ClusterBounds::quantized(surfels, codes, range(index, count)),
+            })
             .collect();
         let words: Vec<_> = clusters.iter().map(ClusterBounds::words).collect();
         let buffer = uploads.buffer("clusters", bytemuck::cast_slice(&words))?;
@@ -141,6 +149,25 @@ impl ClusterBounds {
         cone: Cone::Empty,
         two_sided: false,
     };
+
+    /// Bounds of the surfels `own` as these codes store them.
+    fn quantized(surfels: &Surfels, codes: &Quantized, own: Range<u64>) -> Self {
+        let (mut positions, mut radii, mut normals) = (Vec::new(), Vec::new(), Vec::new());
+        for i in own.start as usize..own.end as usize {
+            let (position, radius, normal) = codes.stored(i, (surfels.positions[i], surfels.radii[i]));
+            positions.push(position);
+            radii.push(radius.abs());
+            normals.push(normal);
+        }
+        let changes = Changes {
+            positions: Some(&positions),
+            normals: Some(&normals),
+            radii: Some(&radii),
+            two_sided: surfels.two_sided.as_ref().map(|all| &all[own.start as usize..own.end as usize]),
+            ..Changes::default()
+        };
+        Self::NONE.with(own.clone(), &changes, own)
+    }
 
     /// These bounds of the surfels `own`, with changes of `changed`: extended, or replaced in the streams of which all values are new.
     fn with(&self, changed: Range<u64>, changes: &Changes<'_>, own: Range<u64>) -> Self {

@@ -1,6 +1,7 @@
 //! Scenes in buffers of the host.
 
 use super::live::check_bounds;
+use super::surfel_streams::{Radii, SurfelStreams};
 use super::{ColourStream, NormalStream, Order, Scene, Stream, chunks, next_id, step};
 use crate::error::{Error, Result};
 use crate::geometry::Bounds;
@@ -49,14 +50,16 @@ impl Scene {
         }
         Ok(Self {
             id: next_id(),
-            positions: external.positions,
-            normals: external.normals,
-            normal_stream: external.normal_stream,
-            curvatures: false,
-            radii: external.radii,
+            surfels: SurfelStreams {
+                positions: external.positions,
+                normals: external.normals,
+                normal_stream: external.normal_stream,
+                curvatures: false,
+                radii: Radii::Floats(external.radii),
+                ellipses: external.ellipses,
+            },
             two_sided: external.two_sided,
             billboards: AtomicBool::new(external.billboards),
-            ellipses: external.ellipses,
             clips: None,
             levels: None,
             clusters: None,

@@ -6,6 +6,7 @@ mod clusters;
 mod external;
 mod groups;
 pub(crate) mod instance;
+mod lattices;
 mod live;
 mod materials;
 mod order;
@@ -14,17 +15,18 @@ mod room;
 mod similarity;
 mod stream;
 mod streams;
+mod surfel_streams;
 mod texture;
 mod update;
 mod weights;
 
 use crate::error::{Error, Result};
 use crate::geometry::{
-    Bounds, Camera, Colours, Curvature, Ellipse, LevelTable, MostDrawn, Parts, Primitives, Surfels, Texture,
+    Bounds, Camera, Colours, LevelTable, MostDrawn, Parts, Primitives, Quantized, RADIUS_ROUNDING,
+    SurfelFormat, Surfels, Texture,
 };
 use crate::vk::shaders::{Resource, resource};
 use crate::vk::{Binding, Buffer, Device, Uploads};
-use bytemuck::{Pod, Zeroable};
 use chunks::{chunks, step};
 pub(crate) use clips::ClipChunk;
 use clips::ClipStream;
@@ -44,6 +46,7 @@ use std::sync::{Arc, Mutex};
 pub(crate) use stream::Stream;
 pub use stream::{NormalStream, SurfelLayout, Words};
 pub use streams::{ColourStream, PrimitiveKinds, Streams};
+use surfel_streams::{SCALAR, SurfelStreams};
 pub(crate) use texture::TextureStream;
 pub use update::Changes;
 use weights::WeightBuffer;
@@ -51,17 +54,10 @@ use weights::WeightBuffer;
 /// Surfels, lines and triangles on a device.
 pub struct Scene {
     pub(crate) id: u64,
-    positions: Stream,
-    normals: Stream,
-    normal_stream: NormalStream,
-    /// Whether a normal is followed by the curvature of the surface.
-    curvatures: bool,
-    /// Radii: negative for two-sided surfels, in a scene that has any; 0 for invalid surfels.
-    radii: Stream,
+    surfels: SurfelStreams,
     two_sided: bool,
     /// Whether some surfels may be billboards: at the upload, or by an update.
     billboards: AtomicBool,
-    ellipses: Option<Stream>,
     clips: Option<ClipStream>,
     /// Which surfels stand for others from afar.
     levels: Option<LevelTable>,
@@ -92,13 +88,6 @@ pub struct Scene {
     count: AtomicU64,
     bounds: Mutex<Bounds>,
 }
-
-/// Bytes of a position or normal.
-const VECTOR: u64 = 12;
-/// Bytes of a radius.
-const SCALAR: u64 = 4;
-/// Bytes of an ellipse.
-const ELLIPSE: u64 = size_of::<Ellipse>() as u64;
 
 impl Scene {
     /// Uploads surfels, lines and triangles to `device`. Surfels are best in Morton order ([`Surfels::sort_morton`]): frames by tiles sort those
@@ -141,12 +130,15 @@ impl Scene {
         let image = parts.texture();
         if image.is_none() && parts.has_texture() {
             let baked = parts.baked();
-            return Self::new_silently(device, uploads, Parts { levels: parts.levels, ..(&baked).into() });
+            return Self::new_silently(
+                device,
+                uploads,
+                Parts { levels: parts.levels, format: parts.format, ..(&baked).into() },
+            );
         }
         room::check(device, &parts)?;
         let (bounds, invalid) = usable(&parts)?;
         let count = surfels.len() as u64;
-        let ellipses = surfels.ellipses.as_deref();
         let chunks = chunks(count, device.capabilities(), 0);
         let textured =
             surfels.texture.as_ref().map(|texture| (texture, &surfels.positions[..], &surfels.radii[..]));
@@ -155,51 +147,44 @@ impl Scene {
             .weights
             .as_ref()
             .map(|weights| WeightBuffer::new(device, uploads, surfels, weights, &chunks));
-        let stream = |name, bytes: &[u8], size| {
-            uploads.buffer(name, bytes).map(|buffer| Stream::side_by_side(buffer, size))
-        };
         // Each level is sorted.
         let order = Order::of(&surfels.positions[..parts.points()]);
         // The bounds of all clusters are bound at once.
         let most = device.capabilities().max_storage_buffer_range;
         let bounded = order == Order::Coherent && count > 0 && clusters::bytes(count) <= most;
+        let radii = marked_radii(surfels, invalid);
+        let quantize = parts.format == SurfelFormat::Quantized;
+        let codes = quantize.then(|| Quantized::of(surfels, &radii)).flatten();
+        let largest = codes.as_ref().map_or(1.0, |_| RADIUS_ROUNDING) * largest(&surfels.radii);
+        let clips = codes.as_ref().map_or(surfels.clips.as_ref(), |codes| codes.clips.as_ref());
         let scene = Self {
             id: next_id(),
-            positions: stream("positions", bytemuck::cast_slice(&surfels.positions), VECTOR)?,
-            normals: match &surfels.curvatures {
-                None => stream("normals", bytemuck::cast_slice(&surfels.normals), VECTOR)?,
-                Some(curvatures) => {
-                    let bent = bent_normals(&surfels.normals, Some(curvatures));
-                    stream("normals", bytemuck::cast_slice(&bent), VECTOR + SCALAR)?
+            surfels: match &codes {
+                None => SurfelStreams::floats(uploads, surfels, &radii)?,
+                Some(codes) => {
+                    SurfelStreams::quantized(uploads, codes, (&surfels.positions, &radii), &chunks)?
                 }
             },
-            curvatures: surfels.curvatures.is_some(),
-            normal_stream: NormalStream::Float,
-            radii: stream("radii", bytemuck::cast_slice(&marked_radii(surfels, invalid)), SCALAR)?,
             two_sided: surfels.two_sided.is_some(),
             billboards: AtomicBool::new(surfels.normals.contains(&Vec3::ZERO)),
-            ellipses: ellipses
-                .map(|ellipses| stream("ellipses", bytemuck::cast_slice(ellipses), ELLIPSE))
-                .transpose()?,
             colours: (colour_stream != ColourStream::None)
-                .then(|| stream("colours", &colours, colour_stream.bytes()))
-                .transpose()?,
+                .then(|| uploads.buffer("colours", &colours))
+                .transpose()?
+                .map(|buffer| Stream::side_by_side(buffer, colour_stream.bytes())),
             weights: weights.transpose()?,
             colour_stream,
-            clips: surfels
-                .clips
-                .as_ref()
-                .map(|clips| ClipStream::new(uploads, clips, &chunks))
-                .transpose()?,
+            clips: clips.map(|clips| ClipStream::new(uploads, clips, &chunks)).transpose()?,
             levels: parts.levels.filter(|table| !table.starts().is_empty()).cloned(),
-            clusters: bounded.then(|| Clusters::new(uploads, surfels, &chunks)).transpose()?,
+            clusters: bounded
+                .then(|| Clusters::new(uploads, surfels, codes.as_ref(), &chunks))
+                .transpose()?,
             primitives: PrimitiveStreams::new(device, uploads, &parts)?,
             texture: image.map(|image| TextureStream::new(device, uploads, image)).transpose()?,
             materials: MaterialStream::new(device, uploads, &parts)?,
             chunks,
             alignment: device.capabilities().storage_buffer_alignment,
             origin: parts.origin(),
-            largest: Some(AtomicU32::new(largest(&surfels.radii).to_bits())),
+            largest: Some(AtomicU32::new(largest.to_bits())),
             of_host: false,
             order,
             curve_box: order::bulk(&surfels.positions),
@@ -213,11 +198,11 @@ impl Scene {
 
     /// Whether the scene is on this device.
     pub fn is_on(&self, device: &Arc<Device>) -> bool {
-        self.positions.buffer.is_on(device)
+        self.surfels.positions.buffer.is_on(device)
     }
 
     pub(crate) fn device(&self) -> &Arc<Device> {
-        self.positions.buffer.device()
+        self.surfels.positions.buffer.device()
     }
 
     /// Returns an error unless the scene is on `device`.
@@ -246,13 +231,9 @@ impl Scene {
         let weights = self.weights.as_ref().map(|weights| &weights.buffer);
         let texture = self.texture.as_ref().map(|texture| &texture.buffer);
         let materials = self.materials.as_ref().map(|materials| &materials.buffer);
-        let streams = [Some(&self.positions), Some(&self.normals), Some(&self.radii)];
-        let streams = streams.into_iter().chain([self.ellipses.as_ref(), self.colours.as_ref()]);
-        let streams = streams.map(|stream| stream.map(|stream| &stream.buffer));
-        let buffers = streams
-            .chain([clips, clusters, weights, texture, materials])
-            .flatten()
-            .filter(|buffer| !buffer.is_external());
+        let colours = self.colours.as_ref().map(|colours| &colours.buffer);
+        let others = [colours, clips, clusters, weights, texture, materials].into_iter().flatten();
+        let buffers = self.surfels.buffers().chain(others).filter(|buffer| !buffer.is_external());
         let primitives = self.primitives.as_ref().map_or(0, PrimitiveStreams::bytes);
         buffers.map(Buffer::size).sum::<u64>() + primitives
     }
@@ -284,8 +265,8 @@ impl Scene {
     /// The streams of the scene.
     pub fn streams(&self) -> Streams {
         Streams {
-            ellipses: self.ellipses.is_some(),
-            curvatures: self.curvatures,
+            ellipses: self.surfels.ellipses.is_some(),
+            curvatures: self.surfels.curvatures,
             two_sided: self.two_sided,
             billboards: self.billboards.load(Ordering::Relaxed),
             clips: self.clips.is_some(),
@@ -306,13 +287,14 @@ impl Scene {
     fn layout(&self) -> SurfelLayout {
         let words = |stream: &Stream| stream.words(self.alignment);
         let usual = SurfelLayout::side_by_side(self.colour_stream);
+        let surfels = &self.surfels;
         SurfelLayout {
-            positions: words(&self.positions),
-            normals: words(&self.normals),
-            normal_stream: self.normal_stream,
-            radii: words(&self.radii),
+            positions: words(&surfels.positions),
+            normals: words(&surfels.normals),
+            normal_stream: surfels.normal_stream,
+            radii: surfels.radii().map_or(usual.radii, words),
             colours: self.colours.as_ref().map_or(usual.colours, words),
-            ellipses: self.ellipses.as_ref().map_or(usual.ellipses, words),
+            ellipses: surfels.ellipses.as_ref().map_or(usual.ellipses, words),
         }
     }
 
@@ -333,16 +315,9 @@ impl Scene {
     /// Resources and bindings of chunk `number`.
     pub(crate) fn bindings(&self, number: usize) -> Vec<(&'static Resource, Binding<'_>)> {
         let chunk = &self.chunks[number];
-        let streams = [
-            (&resource::POSITIONS, Some(&self.positions)),
-            (&resource::NORMALS, Some(&self.normals)),
-            (&resource::RADII, Some(&self.radii)),
-            (&resource::COLOURS, self.colours.as_ref()),
-            (&resource::ELLIPSES, self.ellipses.as_ref()),
-        ];
-        let there = streams.into_iter().filter_map(|(resource, stream)| Some((resource, stream?)));
-        let mut list: Vec<_> =
-            there.map(|(resource, stream)| (resource, stream.binding(chunk, self.alignment))).collect();
+        let mut list: Vec<_> = self.surfels.bindings(number, chunk, self.alignment).collect();
+        let colours = self.colours.as_ref();
+        list.extend(colours.map(|colours| (&resource::COLOURS, colours.binding(chunk, self.alignment))));
         list.extend(self.clips.as_ref().map(|clips| (&resource::CLIPS, clips.binding(number))));
         list.extend(self.weights.as_ref().map(|weights| (&resource::WEIGHTS, weights.binding(number))));
         list
@@ -437,20 +412,6 @@ fn warn_of(invalid: usize, count: usize) {
         "{invalid} of {count} surfels are invalid and will not be drawn: a value is NaN, infinite or beyond {:e}, a normal is neither a unit vector nor 0, an axis is not a unit vector, a radius or an aspect is not above 0, a clip line is not in the tangent plane",
         Surfels::LARGEST
     );
-}
-
-/// A normal, and the curvature of the surface.
-#[derive(Clone, Copy, Pod, Zeroable)]
-#[repr(C)]
-struct BentNormal {
-    normal: Vec3,
-    curvature: Curvature,
-}
-
-/// Normals with curvatures, or with unknown ones.
-fn bent_normals(normals: &[Vec3], curvatures: Option<&[Curvature]>) -> Vec<BentNormal> {
-    let curvature = |i: usize| curvatures.map(|curvatures| curvatures[i]).unwrap_or_default();
-    normals.iter().zip(0..).map(|(&normal, i)| BentNormal { normal, curvature: curvature(i) }).collect()
 }
 
 /// Radii: negative for two-sided surfels, and 0 for invalid ones.

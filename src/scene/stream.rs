@@ -56,6 +56,8 @@ pub enum NormalStream {
     Snorm16 = 2,
     /// Half floats.
     Half = 3,
+    /// Octahedral codes of 16 bits per coordinate, of quantized surfels.
+    Octahedral = 4,
 }
 
 /// Layout of all streams of a chunk.
@@ -89,6 +91,24 @@ impl SurfelLayout {
         }
     }
 
+    /// The same with quantized surfels.
+    pub(super) fn quantized(self) -> Self {
+        let every = |stride| Words { offset: 0, stride };
+        let normals = every(self.normals.stride - 2);
+        Self {
+            positions: every(2),
+            normals,
+            normal_stream: NormalStream::Octahedral,
+            ellipses: every(1),
+            ..self
+        }
+    }
+
+    /// Whether the surfels are quantized.
+    pub fn is_quantized(&self) -> bool {
+        self.normal_stream == NormalStream::Octahedral
+    }
+
     /// Adds the layout to specialization constants.
     pub(crate) fn add_to(&self, constants: Constants) -> Constants {
         constants
@@ -97,6 +117,7 @@ impl SurfelLayout {
             .with(constant::NORMAL_OFFSET, self.normals.offset)
             .with(constant::NORMAL_STRIDE, self.normals.stride)
             .with(constant::NORMALS, self.normal_stream as u32)
+            .with(constant::LATTICES, self.is_quantized())
             .with(constant::RADIUS_OFFSET, self.radii.offset)
             .with(constant::RADIUS_STRIDE, self.radii.stride)
             .with(constant::COLOUR_OFFSET, self.colours.offset)

@@ -1,6 +1,7 @@
 //! The streams of a scene, on which frames, shaders and memory depend.
 
-use super::{ELLIPSE, SCALAR, SurfelLayout, VECTOR};
+use super::SurfelLayout;
+use super::surfel_streams::{CODE, ELLIPSE, LATTICE_POSITION, SCALAR, VECTOR};
 
 /// Streams of a scene beside positions, normals and radii.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -60,17 +61,27 @@ impl Streams {
         }
     }
 
-    /// Streams of uploaded surfels by name, with bytes per surfel; curvatures lie beside the normals. A clip takes 32 more, corner weights 16.
+    /// The same, but quantized.
+    pub fn quantized(self) -> Self {
+        Self { layout: self.layout.quantized(), ..self }
+    }
+
+    /// Streams of uploaded surfels by name, with bytes per surfel; curvatures lie beside the normals, radii of quantized surfels beside the
+    /// positions. A clip takes 32 more, corner weights 16, the lattice of 64 quantized surfels 16, and of those that stay exact 16 each.
     pub fn per_surfel(&self) -> Vec<(&'static str, u64)> {
+        let (quantized, given) = match self.layout.is_quantized() {
+            true => (true, vec![("positions", LATTICE_POSITION), ("normals", CODE)]),
+            false => (false, vec![("positions", VECTOR), ("normals", VECTOR), ("radii", SCALAR)]),
+        };
+        let ellipse = if quantized { CODE } else { ELLIPSE };
         let optional = [
             ("curvatures", if self.curvatures { SCALAR } else { 0 }),
             ("colours", self.colours.bytes()),
-            ("ellipses", if self.ellipses { ELLIPSE } else { 0 }),
+            ("ellipses", if self.ellipses { ellipse } else { 0 }),
             ("clips", if self.clips { 4 } else { 0 }),
             ("weights", if self.weights.is_some() { SCALAR } else { 0 }),
         ];
-        let given = [("positions", VECTOR), ("normals", VECTOR), ("radii", SCALAR)].into_iter();
-        given.chain(optional.into_iter().filter(|(_, bytes)| *bytes > 0)).collect()
+        given.into_iter().chain(optional.into_iter().filter(|(_, bytes)| *bytes > 0)).collect()
     }
 }
 

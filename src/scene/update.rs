@@ -2,7 +2,8 @@
 
 use super::clusters::ClusterChange;
 use super::live::check_bounds;
-use super::{ColourStream, Scene, Stream, bent_normals, largest};
+use super::surfel_streams::bent_normals;
+use super::{ColourStream, Scene, Stream, largest};
 use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Colours, Curvature, Ellipse, Surfels, is_unit};
 use crate::vk::Uploads;
@@ -46,7 +47,7 @@ impl Scene {
     /// another format; for normals and ellipses that clip lines or corner weights depend on; for surfels in buffers of the host. Nothing is
     /// changed then.
     pub fn update(&self, first: u64, changes: &Changes<'_>) -> Result<()> {
-        self.change(&Uploads::now(self.positions.buffer.device())?, first, changes)
+        self.change(&Uploads::now(self.device())?, first, changes)
     }
 
     /// Like [`Scene::update`], through `uploads` of the same device.
@@ -58,7 +59,7 @@ impl Scene {
         bounds.as_ref().map_or(Ok(()), check_bounds)?;
         // A new radius enables a surfel that was disabled as invalid for another reason.
         let revived = self.had_invalid && changes.radii.is_some();
-        if revived || changes.may_be_invalid(self.ellipses.is_some()) {
+        if revived || changes.may_be_invalid(self.surfels.ellipses.is_some()) {
             // Before the writes: the new values may be drawn.
             self.unchecked.store(true, Ordering::Relaxed);
         }
@@ -72,16 +73,16 @@ impl Scene {
         let clusters = self.clusters.as_ref();
         let clusters = clusters.map(|clusters| clusters.change(uploads, range, changes, self.capacity()));
         let clusters = clusters.transpose()?.flatten();
-        write(uploads, Some(&self.positions), first, changes.positions)?;
-        if self.curvatures {
+        write(uploads, Some(&self.surfels.positions), first, changes.positions)?;
+        if self.surfels.curvatures {
             let bent = changes.normals.map(|normals| bent_normals(normals, changes.curvatures));
-            write(uploads, Some(&self.normals), first, bent.as_deref())?;
+            write(uploads, Some(&self.surfels.normals), first, bent.as_deref())?;
         } else {
-            write(uploads, Some(&self.normals), first, changes.normals)?;
+            write(uploads, Some(&self.surfels.normals), first, changes.normals)?;
         }
         let radii = changes.radii.map(|radii| marked(radii, changes.two_sided));
-        write(uploads, Some(&self.radii), first, radii.as_deref())?;
-        write(uploads, self.ellipses.as_ref(), first, changes.ellipses)?;
+        write(uploads, self.surfels.radii(), first, radii.as_deref())?;
+        write(uploads, self.surfels.ellipses.as_ref(), first, changes.ellipses)?;
         match changes.colours {
             Some(Colours::Srgb8(colours)) => write(uploads, self.colours.as_ref(), first, Some(colours))?,
             Some(Colours::Linear(colours)) => write(uploads, self.colours.as_ref(), first, Some(colours))?,
@@ -107,11 +108,13 @@ impl Scene {
             return refuse(
                 "the scene has levels of detail, which would not follow: upload the points without",
             );
+        } else if self.surfels.radii().is_none() {
+            return refuse("the scene stores them quantized: upload it in SurfelFormat::Float");
         } else if range.end > self.capacity() {
             return refuse(&format!("the scene has room for {}", self.capacity()));
-        } else if changes.ellipses.is_some() && self.ellipses.is_none() {
+        } else if changes.ellipses.is_some() && self.surfels.ellipses.is_none() {
             return refuse("the scene has circles: upload it with ellipses");
-        } else if changes.curvatures.is_some() && (!self.curvatures || changes.normals.is_none()) {
+        } else if changes.curvatures.is_some() && (!self.surfels.curvatures || changes.normals.is_none()) {
             return refuse("curvatures need normals, and a scene that was uploaded with curvatures");
         } else if changes.two_sided.is_some() && (!self.two_sided || changes.radii.is_none()) {
             return refuse("two_sided needs radii, and a scene that was uploaded with two-sided surfels");

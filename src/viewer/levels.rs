@@ -1,7 +1,7 @@
 //! Levels of detail: a scene with surfels that stand for several points.
 
 use std::sync::Arc;
-use surfel::geometry::{Levels, Model, Parts};
+use surfel::geometry::{Levels, Model, Parts, SurfelFormat};
 use surfel::vk::Device;
 use surfel::{Progress, Result, Scene};
 
@@ -9,10 +9,15 @@ use surfel::{Progress, Result, Scene};
 ///
 /// # Errors
 /// Those of [`Scene::upload`] without levels, and [`surfel::Error::Cancelled`].
-pub fn upload_with(device: &Arc<Device>, model: &Model, progress: &dyn Progress) -> Result<Arc<Scene>> {
-    match upload(device, model, progress)? {
+pub fn upload_with(
+    device: &Arc<Device>,
+    model: &Model,
+    format: SurfelFormat,
+    progress: &dyn Progress,
+) -> Result<Arc<Scene>> {
+    match upload(device, model, format, progress)? {
         Some(scene) => Ok(scene),
-        None => Scene::upload(device, model).map(Arc::new),
+        None => Scene::upload(device, Parts { format, ..model.into() }).map(Arc::new),
     }
 }
 
@@ -22,7 +27,12 @@ pub fn upload_with(device: &Arc<Device>, model: &Model, progress: &dyn Progress)
 ///
 /// # Errors
 /// [`surfel::Error::Cancelled`].
-pub fn upload(device: &Arc<Device>, model: &Model, progress: &dyn Progress) -> Result<Option<Arc<Scene>>> {
+pub fn upload(
+    device: &Arc<Device>,
+    model: &Model,
+    format: SurfelFormat,
+    progress: &dyn Progress,
+) -> Result<Option<Arc<Scene>>> {
     if model.surfels.weights.is_some() {
         return Ok(None);
     }
@@ -30,6 +40,6 @@ pub fn upload(device: &Arc<Device>, model: &Model, progress: &dyn Progress) -> R
     if levels.table.starts().is_empty() {
         return Ok(None);
     }
-    let parts = Parts { surfels: &levels.surfels, levels: Some(&levels.table), ..model.into() };
+    let parts = Parts { surfels: &levels.surfels, levels: Some(&levels.table), format, ..model.into() };
     Ok(Scene::upload(device, parts).ok().map(Arc::new))
 }

@@ -8,7 +8,7 @@ use std::ffi::OsString;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::thread::{self, JoinHandle};
-use surfel::geometry::Model;
+use surfel::geometry::{Model, SurfelFormat};
 use surfel::settings::methods::Method;
 use surfel::vk::Device;
 use surfel::{Error, Progress, Result, Scene};
@@ -110,7 +110,9 @@ impl Loader {
         self.spawn(move |worker| {
             if let Some(device) = worker.device() {
                 // A load that is cancelled sends nothing.
-                if let Ok(levels) = levels::upload(device, &source.visible_model(), &Silent(worker)) {
+                if let Ok(levels) =
+                    levels::upload(device, &source.visible_model(), source.format, &Silent(worker))
+                {
                     worker.send(LoadEvent::Levels(levels));
                 }
             }
@@ -180,7 +182,8 @@ impl Worker {
         self.events.emit(&Event::Loaded { surfels: loaded.model.surfels.len() as u64 });
         let Some(device) = self.device() else { return Ok(()) };
         let method = loaded.method;
-        let (scene, source) = upload(loaded, |model| levels::upload_with(device, model, self))?;
+        let (scene, source) =
+            upload(loaded, |model, format| levels::upload_with(device, model, format, self))?;
         self.send(LoadEvent::Ready(scene, method, source));
         Ok(())
     }
@@ -227,7 +230,7 @@ impl LoadListener for Worker {
     fn preview(&self, loaded: Loaded) {
         let Some(device) = self.device().filter(|_| !self.reload) else { return };
         let method = loaded.method;
-        if let Ok((scene, source)) = upload(loaded, |model| Scene::upload(device, model).map(Arc::new)) {
+        if let Ok((scene, source)) = upload(loaded, |model, _| Scene::upload(device, model).map(Arc::new)) {
             self.send(LoadEvent::Preview(scene, method, source));
         }
     }
@@ -236,10 +239,10 @@ impl LoadListener for Worker {
 /// Uploads what was loaded, coloured as it asks for.
 fn upload(
     loaded: Loaded,
-    to_device: impl FnOnce(&Model) -> Result<Arc<Scene>>,
+    to_device: impl FnOnce(&Model, SurfelFormat) -> Result<Arc<Scene>>,
 ) -> Result<(Arc<Scene>, Box<Source>)> {
     let mut source = Box::new(Source::new(loaded));
-    let scene = to_device(&source.begin())?;
+    let scene = to_device(&source.begin(), source.format)?;
     Ok((scene, source))
 }
 

@@ -49,7 +49,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::Arc;
 use surfel::frame::faster::FasterRasterizers;
-use surfel::geometry::{ColourMap, Extent, Model, Pose, ValueRange};
+use surfel::geometry::{ColourMap, Extent, Model, Pose, SurfelFormat, ValueRange};
 use surfel::settings::Shading;
 use surfel::settings::methods::Method;
 use surfel::vk::{Device, DeviceOptions};
@@ -108,6 +108,8 @@ pub struct Loaded {
     pub shading: Option<Shading>,
     /// The first strength of ambient occlusion, instead of the usual one; `None` for that.
     pub ao: Option<f32>,
+    /// Format in which the device stores the surfels.
+    pub format: SurfelFormat,
     /// Information for the user.
     pub info: SceneInfo,
     /// Up direction of the world, a unit vector; the camera takes the nearest axis.
@@ -125,6 +127,7 @@ impl Loaded {
             method,
             shading: None,
             ao: None,
+            format: SurfelFormat::default(),
             info: SceneInfo::default(),
             up: DVec3::Y,
         }

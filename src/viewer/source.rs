@@ -8,7 +8,7 @@ use super::{ColourBy, Loaded, PointProperties};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::Arc;
-use surfel::geometry::{Colours, Extent, Model, Surfels, ValueRange};
+use surfel::geometry::{Colours, Extent, Model, Parts, SurfelFormat, Surfels, ValueRange};
 use surfel::scene::{Changes, ColourStream};
 use surfel::settings::Shading;
 use surfel::vk::Device;
@@ -36,6 +36,8 @@ pub struct Source {
     applied: Appearance,
     /// The default range of each attribute that was needed so far.
     default_ranges: Vec<(ColourAttribute, Option<ValueRange>)>,
+    /// Format in which the device stores the surfels.
+    pub format: SurfelFormat,
     info: SceneInfo,
     /// The up axis of the world, a unit vector.
     up: DVec3,
@@ -57,7 +59,7 @@ struct Reading {
 impl Source {
     /// The source of what was loaded.
     pub fn new(
-        Loaded { model, surface, properties, colour_by, info, up, shading, ao, method: _ }: Loaded,
+        Loaded { model, surface, properties, colour_by, format, info, up, shading, ao, method: _ }: Loaded,
     ) -> Self {
         let mut source = Self {
             extent: Extent::of(&model).unwrap_or_default(),
@@ -70,6 +72,7 @@ impl Source {
             wanted: Appearance::own(),
             applied: Appearance::own(),
             default_ranges: Vec::new(),
+            format,
             info,
             up,
             shading,
@@ -313,9 +316,9 @@ impl Source {
     /// Updates the scene from the appearance `old` to the applied one.
     fn update(&self, scene: &mut Arc<Scene>, device: &Arc<Device>, old: Appearance) -> Result<()> {
         let new = self.applied;
-        if scene.level_table().is_some() {
-            // Its levels of detail would not follow.
-            *scene = Arc::new(Scene::upload(device, &*self.visible_model())?);
+        if scene.level_table().is_some() || scene.streams().layout.is_quantized() {
+            // Its levels of detail would not follow, and quantized surfels do not change.
+            *scene = Arc::new(self.upload(device)?);
             return Ok(());
         }
         if (Appearance { radius_scale: old.radius_scale, ..new }) != old {
@@ -323,7 +326,7 @@ impl Source {
             let same = scene.colour_stream() == ColourStream::Srgb8 && !scene.streams().primitives.any();
             if !(same && matches!(colours, Some(Colours::Srgb8(_)))) {
                 // Colours of another format need another scene.
-                *scene = Arc::new(Scene::upload(device, &*self.visible_model())?);
+                *scene = Arc::new(self.upload(device)?);
                 return Ok(());
             }
             scene.update(0, &Changes { colours: colours.as_ref(), ..Default::default() })?;
@@ -334,6 +337,11 @@ impl Source {
             scene.update(0, &Changes { radii: Some(&radii), two_sided, ..Default::default() })?;
         }
         Ok(())
+    }
+
+    /// A new scene without levels of detail under the applied appearance.
+    fn upload(&self, device: &Arc<Device>) -> Result<Scene> {
+        Scene::upload(device, Parts { format: self.format, ..(&*self.visible_model()).into() })
     }
 
     /// Radii of the surfels under the applied appearance.

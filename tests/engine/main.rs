@@ -43,6 +43,7 @@ mod pull_push_lines;
 mod pull_push_points;
 mod pull_push_sizes;
 mod pull_push_surfaces;
+mod quantized;
 mod rasterizers;
 mod reference;
 mod scans;

@@ -392,6 +392,9 @@ pub struct Backend {
     /// Stores sums in 16-bit floats, and pull-push samples in 24 instead of 48 bytes: half the memory, less precise
     #[arg(long)]
     pub half: bool,
+    /// Stores a surfel in 12 instead of 28 bytes, beside its colour; positions move by at most 1/128 of the radius
+    #[arg(long)]
+    pub quantize: bool,
     /// The Vulkan device
     #[command(flatten)]
     pub device: DeviceArgs,

@@ -38,6 +38,9 @@ pub struct View {
     /// The device's rasterizer, or compute shaders [default: compute, or the faster one that `surfel devices --measure` found]
     #[arg(long, value_parser = choice::<Rasterizer>())]
     pub rasterizer: Option<Rasterizer>,
+    /// Stores a surfel in 12 instead of 28 bytes, beside its colour; positions move by at most 1/128 of the radius
+    #[arg(long)]
+    pub quantize: bool,
     /// Time budget of a frame while the camera moves, ms; slower frames become coarser
     #[arg(long, value_name = "MS", default_value_t = 60.0)]
     pub frame_budget: f64,

@@ -59,7 +59,7 @@ pub use tolerance::{Channel, Differences, Tolerance};
 
 use crate::Progress;
 use crate::error::{Error, Result};
-use crate::geometry::{Camera, Parts};
+use crate::geometry::{Camera, Parts, SurfelFormat};
 use crate::picture::Picture;
 use crate::settings::Settings;
 use crate::settings::splatting::Visibility;
@@ -141,6 +141,11 @@ pub fn render<'a>(
     progress: &dyn Progress,
 ) -> Result<Frame> {
     let parts = parts.into();
+    if parts.format == SurfelFormat::Quantized {
+        let surfels = parts.surfels.clone().quantized();
+        let parts = Parts { surfels: &surfels, format: SurfelFormat::Float, ..parts };
+        return render(parts, camera, size, settings, progress);
+    }
     let surfels = parts.surfels;
     settings.splatting.normalization.check_weights(surfels.weights.is_some())?;
     settings.check_primitives(parts.primitives.is_some())?;
