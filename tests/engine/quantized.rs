@@ -49,12 +49,12 @@ fn frames_of_every_case_match_the_reference() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let renderers = Renderers::new(&device);
     let mut compared = 0;
-    for (number, case) in cases().into_iter().enumerate() {
+    for (number, case) in cases().into_iter().enumerate().step_by(if_whole(1, 2)) {
         let mut exact = case.surfels.clone();
         exact.sort_morton();
         let scene = Scene::upload(&device, quantized(&exact)).unwrap();
         compared += usize::from(scene.streams().layout.is_quantized());
-        let rasterizers = if_whole(BOTH.to_vec(), vec![BOTH[number % 2]]);
+        let rasterizers = if_whole(BOTH.to_vec(), vec![BOTH[number / 2 % 2]]);
         // Devices round the unit normals of codes in the last bit, which discs that are seen edge-on amplify.
         let tolerance = if case.name == "edge-on" { Tolerance::float32() } else { Tolerance::default() };
         let camera = &case.cameras[number % 3];
@@ -68,7 +68,7 @@ fn frames_of_every_case_match_the_reference() {
             assert_eq!(comparison.failed, 0, "{}, {rasterizer:?}: {failures:?}", case.name);
         }
     }
-    assert!(compared >= 10, "{compared} cases");
+    assert!(compared >= if_whole(10, 5), "{compared} cases");
     assert_silent(&device);
 }
 
@@ -164,8 +164,8 @@ fn levels_of_detail_are_drawn_where_those_of_exact_points_are() {
     let floats = Scene::upload(&device, &levels).unwrap();
     let renderers = Renderers::new(&device);
     for settings in [perspective_ewa::METHOD.settings(), pull_push::METHOD.settings()] {
-        for eye in [DVec3::new(2.0, 1.6, 3.2), DVec3::new(0.9, 0.55, 0.8)] {
-            for rasterizer in BOTH {
+        for (number, eye) in [DVec3::new(2.0, 1.6, 3.2), DVec3::new(0.9, 0.55, 0.8)].into_iter().enumerate() {
+            for rasterizer in if_whole(BOTH.to_vec(), vec![BOTH[number]]) {
                 let of = |scene: &Scene| {
                     let settings = Settings { lod: 3.0, ..settings.clone() };
                     let options = options(rasterizer);
@@ -187,7 +187,7 @@ fn levels_of_detail_are_drawn_where_those_of_exact_points_are() {
 fn pictures_are_as_near_to_the_truth() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let subject = Subject::scene("scene:bumpy-sphere").unwrap();
-    let surfels = subject.model(100_000).unwrap().surfels;
+    let surfels = subject.model(20_000).unwrap().surfels;
     let camera = camera(DVec3::new(2.0, 1.6, 3.2));
     let settings = Settings { shading: Shading::Lit, ..perspective_ewa::METHOD.settings() };
     let options = options(Rasterizer::Compute);
