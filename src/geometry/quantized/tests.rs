@@ -33,7 +33,7 @@ fn degrees(a: Vec3, b: Vec3) -> f64 {
 
 #[test]
 fn errors_are_as_documented() {
-    for origin in [Vec3::ZERO, Vec3::new(3000.0, -40.0, 0.1)] {
+    for origin in [Vec3::ZERO, Vec3::new(300.0, -40.0, 0.1)] {
         let exact = sphere(20_000, origin);
         let found = exact.clone().quantized();
         let (shapes, others) = (exact.ellipses.as_ref().unwrap(), found.ellipses.as_ref().unwrap());
@@ -49,6 +49,9 @@ fn errors_are_as_documented() {
         }
         assert!(found.positions != exact.positions && found.radii != exact.radii);
     }
+    // Coordinates of which floats are as coarse as the radii are small.
+    let far = sphere(1000, Vec3::new(3000.0, -40.0, 0.1));
+    assert_eq!(far.clone().quantized(), far);
 }
 
 #[test]
