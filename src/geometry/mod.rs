@@ -6,6 +6,7 @@ mod clips;
 mod cloud;
 mod colour_map;
 mod curvature;
+mod discs;
 mod extent;
 mod join;
 mod levels;

@@ -1,17 +1,10 @@
 //! Sums over the discs of several points, of which an aggregated surfel is made (pajarola2004 equations 1–4).
 
-use super::{Disc, cell_of};
-use crate::geometry::{Colours, Ellipse, Surfels};
+use super::cell_of;
+use crate::geometry::discs::{Disc, LEAST_ASPECT, grown_semi_axis, outer, principal_axes};
+use crate::geometry::{Ellipse, Surfels};
 use glam::{DMat3, DVec3, IVec3, Vec3};
 use std::array;
-
-/// The semi-axes of an aggregated disc relative to those of a disc of uniform density with the same covariance, so that it overlaps its
-/// neighbours as points do. Of 1 to 1.8, 1.4 to 1.6 are nearest to the truth, for splats as for pull–push.
-const GROWTH: f64 = 1.5;
-/// Variance of a disc of uniform density along an axis, squared semi-axes.
-const DISC_VARIANCE: f64 = 0.25;
-/// Least aspect of an aggregated ellipse: points along a line span no area.
-const LEAST_ASPECT: f64 = 0.2;
 
 /// Sums over discs, weighted by area. Billboards have no normal.
 #[derive(Clone, Debug)]
@@ -36,24 +29,16 @@ impl Aggregate {
     pub fn of(surfels: &Surfels, i: u32, light: &[f32; 256]) -> Self {
         let at = i as usize;
         let [p, n] = [surfels.positions[at], surfels.normals[at]].map(Vec3::as_dvec3);
-        let ellipse = surfels.ellipses.as_ref().map_or(Ellipse::circle(surfels.normals[at]), |all| all[at]);
-        let [radius, aspect] = [surfels.radii[at], ellipse.aspect].map(f64::from);
-        let major = ellipse.major.as_dvec3();
-        let minor = n.cross(major);
-        // A billboard extends as far in every direction.
-        let (shape, aspect) = match surfels.is_billboard(at) {
-            true => (DMat3::IDENTITY, 1.0),
-            false => (outer(major) + aspect * aspect * outer(minor), aspect),
-        };
-        let disc = DISC_VARIANCE * radius * radius * shape;
-        let area = (radius * radius * aspect).max(f64::MIN_POSITIVE);
+        let aspect =
+            surfels.ellipses.as_ref().filter(|_| !surfels.is_billboard(at)).map_or(1.0, |all| all[at].aspect);
+        let area = (f64::from(surfels.radii[at]).powi(2) * f64::from(aspect)).max(f64::MIN_POSITIVE);
         Self {
             cell: IVec3::ZERO,
             area,
             position: area * p,
             normal: area * n,
-            colour: area * linear(surfels, i, light).as_dvec3(),
-            second: area * (outer(p) + disc),
+            colour: area * surfels.linear_colour(at, light).as_dvec3(),
+            second: area * (outer(p) + surfels.disc_covariance(at)),
             two_sided: surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[at]),
             billboard: surfels.is_billboard(at),
             point: i,
@@ -109,7 +94,8 @@ impl Aggregate {
         }
         let normal = self.normal.as_vec3().try_normalize().unwrap_or(surfels.normals[self.point as usize]);
         let covariance = self.second * (1.0 / self.area) - outer(mean);
-        let (major, [first, second]) = semi_axes(covariance, normal.as_dvec3());
+        let (major, variances) = principal_axes(covariance, normal.as_dvec3());
+        let [first, second] = variances.map(grown_semi_axis);
         let floor = f64::from(self.largest);
         let [first, second] = [first.max(floor), second.max(floor * LEAST_ASPECT)];
         let aspect = (second / first).clamp(LEAST_ASPECT, 1.0);
@@ -124,7 +110,7 @@ impl Aggregate {
     /// The billboard with the area of all, or that covers their extent where this is less: scattered points hide what is behind them in part.
     fn billboard_at(&self, position: Vec3, covariance: DMat3) -> Disc {
         let variance = (covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z) / 3.0;
-        let extent = GROWTH * (variance.max(0.0) / DISC_VARIANCE).sqrt();
+        let extent = grown_semi_axis(variance);
         let radius = self.area.sqrt().min(extent) as f32;
         self.disc_of(position, Vec3::ZERO, radius.max(self.largest), Ellipse::circle(Vec3::ZERO))
     }
@@ -142,22 +128,6 @@ impl Aggregate {
     }
 }
 
-/// The colour of a point in linear light; 0 without colours.
-fn linear(surfels: &Surfels, i: u32, light: &[f32; 256]) -> Vec3 {
-    match &surfels.colours {
-        Some(Colours::Srgb8(codes)) => {
-            let code = codes[i as usize];
-            Vec3::from_array(array::from_fn(|channel| light[usize::from(code[channel])]))
-        }
-        Some(Colours::Linear(linear)) => linear[i as usize].into(),
-        None => Vec3::ZERO,
-    }
-}
-
-fn outer(v: DVec3) -> DMat3 {
-    DMat3::from_cols(v * v.x, v * v.y, v * v.z)
-}
-
 /// The position, moved into the cell if rounding took it out of it.
 fn within(position: Vec3, cell: IVec3, side: f32) -> Vec3 {
     if cell_of(position, side) == cell {
@@ -166,15 +136,4 @@ fn within(position: Vec3, cell: IVec3, side: f32) -> Vec3 {
     let low = cell.as_vec3() * side;
     let beyond = (cell + IVec3::ONE).as_vec3() * side;
     array::from_fn::<f32, 3, _>(|axis| position[axis].clamp(low[axis], beyond[axis].next_down())).into()
-}
-
-/// Longer axis, within the plane of `normal`, of the disc of uniform density with this covariance, and both semi-axes.
-fn semi_axes(covariance: DMat3, normal: DVec3) -> (DVec3, [f64; 2]) {
-    let (s, t) = normal.any_orthonormal_pair();
-    let [xx, xy, yy] = [s.dot(covariance * s), s.dot(covariance * t), t.dot(covariance * t)];
-    let (half, radius) = (0.5 * (xx - yy), (0.5 * (xx - yy)).hypot(xy));
-    let axis = if half >= 0.0 { [half + radius, xy] } else { [xy, radius - half] };
-    let axis = if radius > 0.0 { (axis[0] * s + axis[1] * t).normalize() } else { s };
-    let mean = 0.5 * (xx + yy);
-    (axis, [mean + radius, mean - radius].map(|variance| GROWTH * (variance.max(0.0) / DISC_VARIANCE).sqrt()))
 }

@@ -1,9 +1,10 @@
 //! From points to the discs of every level.
 
 use super::aggregate::Aggregate;
-use super::{Disc, MOST_LEVELS, cell_of};
+use super::{MOST_LEVELS, cell_of};
 use crate::Progress;
 use crate::error::Result;
+use crate::geometry::discs::Disc;
 use crate::geometry::{Surfels, morton, srgb};
 use glam::{IVec3, Vec3};
 use rayon::prelude::*;

@@ -9,10 +9,10 @@ mod boxes;
 mod cells;
 mod most_drawn;
 
-use super::{Clips, Colours, Curvature, Ellipse, Surfels};
+use super::Surfels;
+use super::discs::Disc;
 use crate::Progress;
 use crate::error::{Error, Result};
-use crate::geometry::srgb;
 use boxes::{LevelBox, LevelBoxes};
 use cells::Cells;
 use glam::{IVec3, Vec3};
@@ -84,7 +84,7 @@ impl Levels {
     ///
     /// # Errors
     /// Those of [`Levels::of`], and [`Error::Cancelled`].
-    pub fn build(surfels: Surfels, progress: &dyn Progress) -> Result<Self> {
+    pub fn build(mut surfels: Surfels, progress: &dyn Progress) -> Result<Self> {
         if surfels.weights.is_some() {
             let text = "surfels with normalization weights have no levels of detail: remove the weights";
             return Err(Error::Usage(text.into()));
@@ -101,7 +101,9 @@ impl Levels {
             (next - level.len()) as u32
         };
         let starts = levels.iter().map(start).collect();
-        let surfels = extended(surfels, &levels);
+        let discs = levels.iter().flatten();
+        let sampled = surfels.sampled(discs.clone());
+        surfels.append_discs(discs, sampled);
         let mut table = LevelTable { starts, spacing, boxes: LevelBoxes::default() };
         table.boxes = LevelBoxes::of(&surfels, &table);
         Ok(Self { surfels, table })
@@ -113,61 +115,9 @@ impl Levels {
     }
 }
 
-/// An aggregated surfel.
-struct Disc {
-    position: Vec3,
-    normal: Vec3,
-    radius: f32,
-    ellipse: Ellipse,
-    /// Linear light.
-    colour: [f32; 3],
-    two_sided: bool,
-    /// Index of a point whose other attributes it has.
-    point: u32,
-}
-
 /// The cell that contains a position, in sides.
 fn cell_of(position: Vec3, side: f32) -> IVec3 {
     (position / side).floor().as_ivec3()
-}
-
-/// Appends the discs of each level, with the streams of the points.
-fn extended(mut all: Surfels, levels: &[Vec<Disc>]) -> Surfels {
-    let (points, count) = (all.len(), levels.iter().map(Vec::len).sum::<usize>());
-    if all.texture.is_some() || all.materials.is_some() {
-        let of_discs = levels.iter().flatten().map(|disc| disc.point);
-        let indices: Vec<u32> = (0..points as u32).chain(of_discs).collect();
-        all.texture = all.texture.take().map(|texture| texture.gather(&indices));
-        all.materials = all.materials.take().map(|materials| materials.gather(&indices));
-    }
-    all.clips = Clips::join([(all.clips.take(), points), (None, count)]);
-    append(&mut all.positions, levels, |disc| disc.position);
-    append(&mut all.normals, levels, |disc| disc.normal);
-    append(&mut all.radii, levels, |disc| disc.radius);
-    if let Some(ellipses) = &mut all.ellipses {
-        append(ellipses, levels, |disc| disc.ellipse);
-    }
-    if let Some(curvatures) = &mut all.curvatures {
-        append(curvatures, levels, |_| Curvature::default());
-    }
-    if let Some(two_sided) = &mut all.two_sided {
-        append(two_sided, levels, |disc| disc.two_sided);
-    }
-    match &mut all.colours {
-        Some(Colours::Srgb8(codes)) => append(codes, levels, |disc| {
-            let [r, g, b] = disc.colour.map(srgb::encode8);
-            [r, g, b, u8::MAX]
-        }),
-        Some(Colours::Linear(linear)) => append(linear, levels, |disc| disc.colour),
-        None => {}
-    }
-    all
-}
-
-/// Appends a value for each disc.
-fn append<T>(stream: &mut Vec<T>, levels: &[Vec<Disc>], value: impl Fn(&Disc) -> T) {
-    stream.reserve_exact(levels.iter().map(Vec::len).sum());
-    stream.extend(levels.iter().flatten().map(value));
 }
 
 #[cfg(test)]

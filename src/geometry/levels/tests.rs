@@ -1,10 +1,10 @@
 use super::cells::{FEW, LEAST_SHARE};
 use super::*;
-use crate::geometry::{Bounds, Camera, Weights};
+use crate::geometry::{Bounds, Camera, Colours, Ellipse, Weights, srgb};
 use crate::settings::Settings;
 use crate::verify::reference::levels::LevelOfDetail;
 use crate::verify::scenes;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use std::collections::HashMap;
 
 fn bumpy(points: u32) -> Surfels {
@@ -106,6 +106,7 @@ fn both_sides_of_a_sheet_stay_and_streams_are_as_long_as_the_surfels() {
     sheet.ellipses = Some(sheet.normals.iter().map(|n| Ellipse::circle(*n)).collect());
     sheet.curvatures = Some(vec![Default::default(); sheet.len()]);
     sheet.two_sided = Some(vec![false; sheet.len()]);
+    sheet.point_indices = Some((0..sheet.len() as u32).collect());
     let levels = Levels::of(sheet).unwrap();
     levels.surfels.check().unwrap();
     let aggregated = levels.points().end..levels.surfels.len();
