@@ -9,6 +9,7 @@ mod compare;
 #[cfg(feature = "metrics")]
 mod compare_frames;
 mod convert;
+mod cut;
 mod devices;
 mod exit;
 mod files;

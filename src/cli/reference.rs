@@ -4,7 +4,7 @@ use super::render::{Outcome, Task};
 use super::turntable;
 use std::time::Instant;
 use surfel::frame::times::Times;
-use surfel::geometry::Camera;
+use surfel::geometry::{Camera, Parts};
 use surfel::verify::reference;
 use surfel::{Error, Picture, Result, SplatCounts};
 
@@ -39,7 +39,9 @@ pub fn turn(
 ) -> Result<()> {
     for (number, camera) in cameras.iter().enumerate() {
         turntable::report_progress(task, number, cameras.len());
-        let frame = reference::render(task.scene, camera, task.size, &task.settings, &())?;
+        let cut = task.cut.map(|cut| cut.surfels(camera)).transpose()?;
+        let scene = cut.as_ref().map_or(task.scene, |surfels| Parts { surfels, ..task.scene });
+        let frame = reference::render(scene, camera, task.size, &task.settings, &())?;
         save(number, frame.to_picture())?;
     }
     turntable::report_progress(task, cameras.len(), cameras.len());

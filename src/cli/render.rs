@@ -1,6 +1,7 @@
 //! `surfel render`.
 
 use super::args::{PassTimes, Render};
+use super::cut::{self, Cut};
 use super::report::{Gpu, HalfError, Report};
 use super::{camera, files, progress, reference, summary, turntable, vulkan};
 use std::path::Path;
@@ -11,14 +12,16 @@ use surfel::formats::image::{Encoded, Output, write};
 use surfel::frame::times::Times;
 use surfel::geometry::{Camera, Extent, Levels, Model, Parts, SurfelFormat};
 use surfel::load::{Coloured, Colouring, LoadOptions, SuggestedShading, Uncoloured, load};
-use surfel::settings::Shading;
 use surfel::settings::methods::{Method, pull_push};
+use surfel::settings::{Hierarchy, Shading};
 use surfel::{Error, Outputs, Picture, Progress, Result, Settings, SplatCounts, thousands};
 
 /// A picture to render, with Vulkan or the reference.
 pub struct Task<'a> {
-    /// The scene.
+    /// The scene, of the camera's cut if there is an octree.
     pub scene: Parts<'a>,
+    /// The octree that every camera has its own cut of, if there is one.
+    pub cut: Option<&'a Cut>,
     /// The method, without the changes of its axes.
     pub method: Method,
     /// The camera.
@@ -58,6 +61,10 @@ pub fn run(args: &Render) -> Result<()> {
     let asked = args.method()?;
     let first = args.settings(&asked.unwrap_or(Method::ALL[0]));
     first.check()?;
+    let octree = args.render_settings.hierarchy == Hierarchy::Paper;
+    if octree {
+        cut::check(&first)?;
+    }
     let device = vulkan::options(&args.backend.device)?;
     let file = camera::read(&args.camera)?;
     let colouring = args.colours.colouring()?;
@@ -108,13 +115,18 @@ pub fn run(args: &Render) -> Result<()> {
         progress::say(&note);
     }
     let contents = summary::parts(&loaded.model);
-    let levels = (settings.lod > 0.0 || settings.max_points.is_some())
-        .then(|| Levels::of(std::mem::take(&mut loaded.model.surfels)))
-        .transpose()?;
+    let has_levels = !octree && (settings.lod > 0.0 || settings.max_points.is_some());
+    let mut points = || std::mem::take(&mut loaded.model.surfels);
+    let cut = octree.then(|| Cut::new(points(), &settings, args.size, &*bars)).transpose()?;
+    let levels = has_levels.then(|| Levels::of(points())).transpose()?;
+    if let Some(cut) = &cut {
+        loaded.model.surfels = cut.surfels(&camera)?;
+    }
     let scene = parts(&loaded.model, levels.as_ref(), SurfelFormat::quantized(args.backend.quantize));
     let (layers, size, frames, progress) = (args.outputs(), args.size, args.frames, &*bars);
     let split = args.times == Some(PassTimes::Split);
-    let task = Task { scene, method, camera, settings, size, layers, frames, split, progress };
+    let cut = cut.as_ref();
+    let task = Task { scene, cut, method, camera, settings, size, layers, frames, split, progress };
     let counts = args.json.is_some();
     let wanted = Measured { times: counts || args.times.is_some(), counts };
     let mut outcome = if args.backend.reference {
@@ -144,7 +156,7 @@ pub fn run(args: &Render) -> Result<()> {
         }
     }
     if let Some(output) = &args.json {
-        files::write_text(output, &Report::new(args, &loaded, &task, &outcome).to_json()?)?;
+        files::write_text(output, &Report::new(args, &loaded, &task, &outcome)?.to_json()?)?;
     }
     print_summary(args, &contents, &outcome);
     Ok(())

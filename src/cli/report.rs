@@ -53,7 +53,10 @@ pub struct Report(Map<String, Value>);
 
 impl Report {
     /// The report of a command and its outcome. Without a device, the entries of the device are null.
-    pub fn new(args: &Render, loaded: &LoadedModel, task: &Task<'_>, outcome: &Outcome) -> Self {
+    ///
+    /// # Errors
+    /// Those of the selection of a cut.
+    pub fn new(args: &Render, loaded: &LoadedModel, task: &Task<'_>, outcome: &Outcome) -> Result<Self> {
         let names = |name| Path::new(name).display().to_string();
         let mut report = Map::new();
         let mut put = |key: &str, value: Value| report.insert(key.into(), value);
@@ -65,6 +68,8 @@ impl Report {
         put("size", json!(task.size));
         put("frames", json!(task.frames));
         put("settings", settings(&task.settings));
+        put("hierarchy", json!(args.render_settings.hierarchy.name()));
+        put("octree", json!(task.cut.map(|cut| cut.report(&task.camera)).transpose()?));
         put("camera", camera(task));
         put("counts", outcome.counts.map_or(Value::Null, |counts| tally(loaded, counts)));
         put("estimated", estimated(&loaded.estimated));
@@ -73,7 +78,7 @@ impl Report {
         put("passes", outcome.times.passes().map(pass).collect());
         let mut report = Self(report);
         report.put_gpu(outcome.gpu.as_ref());
-        report
+        Ok(report)
     }
 
     /// Adds the entries of the device.

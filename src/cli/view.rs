@@ -16,6 +16,7 @@ use surfel::geometry::{Colours, Extent, Model, SurfelFormat};
 use surfel::load::{
     Colouring, Listener, LoadOptions, Preview, SuggestedShading, Suggestion, Uncoloured, load, scene,
 };
+use surfel::settings::Hierarchy;
 use surfel::settings::methods::Method;
 use surfel::{Error, Progress, Result};
 
@@ -24,6 +25,10 @@ pub fn run(args: View) -> Result<()> {
     let start = Instant::now();
     let method = args.method()?;
     args.settings(&method.unwrap_or(Method::ALL[0])).check()?;
+    if args.render_settings.hierarchy == Hierarchy::Paper {
+        let text = "--hierarchy paper selects surfels for one camera, and the window moves it: leave it out, or give it to `surfel render`";
+        return Err(Error::Usage(text.into()));
+    }
     if !(args.frame_budget > 0.0 && args.frame_budget.is_finite()) {
         return Err(Error::Usage(format!(
             "--frame-budget is {} ms: give a number above 0",

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::time::Instant;
 use surfel::embed::Measured;
 use surfel::frame::times::Times;
-use surfel::geometry::Camera;
+use surfel::geometry::{Camera, Parts, Surfels};
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
 use surfel::{Error, Picture, Precision, Rasterizer, RenderOptions, Renderer, Result, Scene, SplatCounts};
 
@@ -135,7 +135,10 @@ pub fn turn(
     let scene = Scene::upload(&device, task.scene)?;
     for (number, camera) in cameras.iter().enumerate() {
         turntable::report_progress(task, number, cameras.len());
-        let (picture, _) = renderer.render_picture(&scene, camera, &task.settings)?;
+        let cut = task.cut.map(|cut| cut.surfels(camera)).transpose()?;
+        let of_cut = |surfels: &Surfels| Scene::upload(&device, Parts { surfels, ..task.scene });
+        let cut = cut.as_ref().map(of_cut).transpose()?;
+        let (picture, _) = renderer.render_picture(cut.as_ref().unwrap_or(&scene), camera, &task.settings)?;
         save(number, picture)?;
     }
     turntable::report_progress(task, cameras.len(), cameras.len());

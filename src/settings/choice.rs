@@ -50,7 +50,7 @@ mod tests {
     use super::*;
     use crate::geometry::ColourMap;
     use crate::settings::splatting::{Filter, Footprint, Normalization, Shade, Visibility};
-    use crate::settings::{Alpha, Cull, Precision, Rasterizer, Shading, Widen};
+    use crate::settings::{Alpha, Cull, Hierarchy, Precision, Rasterizer, Shading, Widen};
 
     fn check<T: Choice + PartialEq + std::fmt::Debug>() {
         for one in T::ALL {
@@ -78,6 +78,7 @@ mod tests {
         check::<Normalization>();
         check::<Shade>();
         check::<Rasterizer>();
+        check::<Hierarchy>();
         check::<Precision>();
         check::<Widen>();
         check::<Cull>();

@@ -2,6 +2,7 @@
 
 mod check;
 mod choice;
+mod hierarchy;
 pub mod methods;
 mod outputs;
 pub mod pull_push;
@@ -11,6 +12,7 @@ use crate::error::{Error, Result};
 use crate::settings::pull_push::PullPush;
 use crate::settings::splatting::{Filter, Footprint, Splatting, Visibility};
 pub use choice::Choice;
+pub use hierarchy::Hierarchy;
 pub use outputs::{Outputs, Precision, Rasterizer, RasterizerChoice, RasterizerReason};
 use std::ops::RangeInclusive;
 

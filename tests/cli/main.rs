@@ -9,6 +9,7 @@ mod convert;
 mod errors;
 mod formats;
 mod guide;
+mod hierarchy;
 mod info;
 mod inputs;
 mod lines;

@@ -31,7 +31,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use surfel::settings::methods::{self, Method};
 use surfel::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
-use surfel::settings::{Alpha, Choice, Cull, Edges, Shading, Widen};
+use surfel::settings::{Alpha, Choice, Cull, Edges, Hierarchy, Shading, Widen};
 use surfel::{Error, Outputs, Rasterizer, Result, Settings};
 
 /// Renders point-sampled surfaces with Vulkan.
@@ -279,6 +279,9 @@ pub struct RenderSettings {
     /// Level of detail, px: surfels that stand for all points of a cell are drawn where its side is at most this; 0 draws all points
     #[arg(long, value_name = "PX", default_value_t = 0.0, allow_hyphen_values = true)]
     pub lod: f32,
+    /// Where levels of detail come from
+    #[arg(long, default_value = Hierarchy::default().name(), value_parser = choice::<Hierarchy>())]
+    pub hierarchy: Hierarchy,
     /// Most surfels that are drawn: the level of detail is the least one that keeps to it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub max_points: Option<u64>,
