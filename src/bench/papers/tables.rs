@@ -2,9 +2,16 @@
 //!
 //! A built-in scene of as many points replaces a model that is not [given](super::models), at the same size.
 
+mod botsch2003;
+mod marroquim2008;
+mod pajarola2004;
+mod ren2002;
+#[cfg(test)]
+mod tests;
+mod zwicker2004;
+
 use super::method;
 use super::models::{Model, Models};
-use super::quotation::Paper::{Botsch2003, Marroquim2008, Pajarola2004, Ren2002, Zwicker2004};
 use super::quotation::Passage::{Section, Table as Caption};
 use super::quotation::Quotation;
 use crate::bench::engine::Engine;
@@ -124,220 +131,11 @@ const TINY: [u32; 2] = square(256);
 const PROJECTION: &[&str] = &["clear", "project", "fetch"];
 const PULL_PUSH: &[&str] = &["pull", "copy", "push"];
 
-/// Of the Armadillo and the Thai Statue with colours, the smallest and the largest model.
-const DOMINANCE: [Statement; 2] = [
-    Statement {
-        quotation: Marroquim2008.says(
-            Section("6"),
-            "the rendering time for small models is dominated by the pull–push interpolation",
-        ),
-        row: 1,
-        passes: [PULL_PUSH, PROJECTION],
-    },
-    Statement {
-        quotation: Marroquim2008.says(
-            Section("6"),
-            "the rendering time for large models is dominated by the projection of points and therefore by the number of points.",
-        ),
-        row: 9,
-        passes: [PROJECTION, PULL_PUSH],
-    },
-];
-
 /// All tables.
-pub const ALL: [Table; 7] = [
-    Table {
-        caption: Ren2002
-            .says(Caption(1), "Rendering performances of the three algorithms for frame buffer resolution"),
-        hardware: "Athlon 1 GHz; Radeon 8500, GeForce4 Ti 4400",
-        columns: &["Radeon 8500", "GeForce4"],
-        unit: Unit::Fps,
-        note: "A checkerboard of 64 k surfels. Without EWA surfels have weights, too. Numbers of instructions are left out.",
-        rows: &[
-            row("without EWA", &[65_536], SMALL, WITHOUT_EWA, &[57.3, 59.6]),
-            row("EWA, per-pixel normalization", &[65_536], SMALL, PER_PIXEL, &[1.3, 1.0]),
-            row("EWA, per-surfel normalization", &[65_536], SMALL, PER_SURFEL, &[16.9, 23.8]),
-        ],
-        says: &[],
-    },
-    Table {
-        caption: Ren2002.says(Caption(2), "Rendering performance for frame buffer resolutions"),
-        hardware: "Athlon 1 GHz; Radeon 8500, GeForce4 Ti 4400",
-        columns: &["Radeon 8500", "GeForce4"],
-        unit: Unit::Fps,
-        note: "With per-surfel normalization, whose weights are captured beforehand.",
-        rows: &[
-            row("Salamander", &[103_389], TINY, Rendering::BySurfel, &[18.9, 30.0]),
-            row("Salamander", &[103_389], SMALL, Rendering::BySurfel, &[16.9, 24.9]),
-            row("Chameleon", &[101_685], TINY, Rendering::BySurfel, &[17.0, 23.2]),
-            row("Chameleon", &[101_685], SMALL, Rendering::BySurfel, &[14.0, 19.0]),
-            row("Wasp", &[273_325], TINY, Rendering::BySurfel, &[6.1, 8.0]),
-            row("Wasp", &[273_325], SMALL, Rendering::BySurfel, &[5.1, 6.1]),
-            row("Fiesta", &[352_467], TINY, Rendering::BySurfel, &[5.5, 7.0]),
-            row("Fiesta", &[352_467], SMALL, Rendering::BySurfel, &[3.8, 5.3]),
-        ],
-        says: &[],
-    },
-    Table {
-        caption: Botsch2003
-            .says(Caption(1), "The resulting timings for several models, given for window resolutions of"),
-        hardware: "Pentium 4 2.8 GHz, GeForce FX 5800 Ultra",
-        columns: &["published"],
-        unit: Unit::Fps,
-        note: "The paper tells the same as splats per second, too: frames per second times points.",
-        rows: &[
-            row("Charlemagne, unfiltered", &[1_630_000], SMALL, UNFILTERED, &[17.2]),
-            row("Charlemagne, filtered", &[1_630_000], SMALL, SPRITES, &[6.3]),
-            row("Charlemagne, unfiltered", &[1_630_000], LARGE, UNFILTERED, &[16.9]),
-            row("Charlemagne, filtered", &[1_630_000], LARGE, SPRITES, &[6.2]),
-            row("St. Matthew, unfiltered", &[1_570_000], SMALL, UNFILTERED, &[17.2]),
-            row("St. Matthew, filtered", &[1_570_000], SMALL, SPRITES, &[6.4]),
-            row("St. Matthew, unfiltered", &[1_570_000], LARGE, UNFILTERED, &[16.9]),
-            row("St. Matthew, filtered", &[1_570_000], LARGE, SPRITES, &[6.3]),
-            row("David Head, unfiltered", &[1_080_000], SMALL, UNFILTERED, &[25.6]),
-            row("David Head, filtered", &[1_080_000], SMALL, SPRITES, &[9.4]),
-            row("David Head, unfiltered", &[1_080_000], LARGE, UNFILTERED, &[24.1]),
-            row("David Head, filtered", &[1_080_000], LARGE, SPRITES, &[9.0]),
-            row("David, unfiltered", &[1_060_000], SMALL, UNFILTERED, &[26.4]),
-            row("David, filtered", &[1_060_000], SMALL, SPRITES, &[9.5]),
-            row("David, unfiltered", &[1_060_000], LARGE, UNFILTERED, &[25.7]),
-            row("David, filtered", &[1_060_000], LARGE, SPRITES, &[9.3]),
-            row("Max, unfiltered", &[655_000], SMALL, UNFILTERED, &[42.7]),
-            row("Max, filtered", &[655_000], SMALL, SPRITES, &[15.3]),
-            row("Max, unfiltered", &[655_000], LARGE, UNFILTERED, &[40.4]),
-            row("Max, filtered", &[655_000], LARGE, SPRITES, &[14.2]),
-            row("Male, unfiltered", &[148_000], SMALL, UNFILTERED, &[124.2]),
-            row("Male, filtered", &[148_000], SMALL, SPRITES, &[56.5]),
-            row("Male, unfiltered", &[148_000], LARGE, UNFILTERED, &[112.4]),
-            row("Male, filtered", &[148_000], LARGE, SPRITES, &[46.6]),
-            row("Balljoint, unfiltered", &[137_000], SMALL, UNFILTERED, &[172.6]),
-            row("Balljoint, filtered", &[137_000], SMALL, SPRITES, &[73.2]),
-            row("Balljoint, unfiltered", &[137_000], LARGE, UNFILTERED, &[124.3]),
-            row("Balljoint, filtered", &[137_000], LARGE, SPRITES, &[45.3]),
-            row("Chameleon, unfiltered", &[101_000], SMALL, UNFILTERED, &[178.7]),
-            row("Chameleon, filtered", &[101_000], SMALL, SPRITES, &[74.9]),
-            row("Chameleon, unfiltered", &[101_000], LARGE, UNFILTERED, &[150.3]),
-            row("Chameleon, filtered", &[101_000], LARGE, SPRITES, &[55.3]),
-        ],
-        says: &[],
-    },
-    Table {
-        caption: Zwicker2004.says(Caption(1), "Rendering timings for window resolutions of"),
-        hardware: "Pentium IV 3.0 GHz, GeForce FX 5950",
-        columns: &["Cg", "assembler"],
-        unit: Unit::MillionSplats,
-        note: "A mean over objects of 100 k to 650 k points: here of 100 k, 300 k and 650 k.",
-        rows: &[
-            row("1 pass", OBJECTS, SMALL, SINGLE, &[5.9, 11.2]),
-            row("3 passes", OBJECTS, SMALL, PERSPECTIVE, &[1.4, 3.1]),
-            row("1 pass", OBJECTS, WIDE, SINGLE, &[5.8, 10.4]),
-            row("3 passes", OBJECTS, WIDE, PERSPECTIVE, &[1.2, 2.8]),
-        ],
-        says: &[],
-    },
-    Table {
-        caption: Pajarola2004.says(
-            Caption(1),
-            "Multiresolution Point Hierarchy File Sizes and Construction and Splat Generation Times",
-        ),
-        hardware: "Pentium 4 2.8 GHz",
-        columns: &["build"],
-        unit: Unit::Seconds,
-        note: "Times to build its octree of levels of detail, which has no counterpart here yet.",
-        rows: &[
-            row("David", &[2_000_606], SMALL, Rendering::Missing(LEVELS), &[12.7]),
-            row("Female", &[302_948], SMALL, Rendering::Missing(LEVELS), &[2.97]),
-            row("Balljoint", &[137_062], SMALL, Rendering::Missing(LEVELS), &[0.73]),
-            row("Dragon", &[437_645], SMALL, Rendering::Missing(LEVELS), &[2.41]),
-        ],
-        says: &[],
-    },
-    Table {
-        caption: Pajarola2004.says(Caption(2), "Rendering Performance Is Given for Each Task in Seconds"),
-        hardware: "Pentium 4 2.8 GHz, GeForce FX 5900",
-        columns: &["splatting", "total"],
-        unit: Unit::Seconds,
-        note: "Of a tolerance of 0 the points that face the eye are splatted, here found frame by frame and there in the octree; larger tolerances \
-               need levels of detail. There with two lights, here with one at the eye. The total has the selection of levels in it.",
-        rows: &[
-            row("David, tolerance 0", &[2_000_606], SMALL, CONFETTI, &[0.397, 0.584]),
-            row("David, tolerance 0.02 %", &[2_000_606], SMALL, Rendering::Missing(LEVELS), &[0.163, 0.284]),
-            row("David, tolerance 0.04 %", &[2_000_606], SMALL, Rendering::Missing(LEVELS), &[0.151, 0.266]),
-            row("Female, tolerance 0", &[302_948], SMALL, CONFETTI, &[0.047, 0.075]),
-            row("Female, tolerance 0.02 %", &[302_948], SMALL, Rendering::Missing(LEVELS), &[0.017, 0.041]),
-            row("Female, tolerance 0.04 %", &[302_948], SMALL, Rendering::Missing(LEVELS), &[0.015, 0.035]),
-            row("Balljoint, tolerance 0", &[137_062], SMALL, CONFETTI, &[0.014, 0.026]),
-            row(
-                "Balljoint, tolerance 0.02 %",
-                &[137_062],
-                SMALL,
-                Rendering::Missing(LEVELS),
-                &[0.004, 0.019],
-            ),
-            row(
-                "Balljoint, tolerance 0.16 %",
-                &[137_062],
-                SMALL,
-                Rendering::Missing(LEVELS),
-                &[0.003, 0.018],
-            ),
-            row("Dragon, tolerance 0", &[437_645], SMALL, CONFETTI, &[0.087, 0.129]),
-            row("Dragon, tolerance 0.02 %", &[437_645], SMALL, Rendering::Missing(LEVELS), &[0.033, 0.069]),
-            row("Dragon, tolerance 0.04 %", &[437_645], SMALL, Rendering::Missing(LEVELS), &[0.025, 0.056]),
-        ],
-        says: &[],
-    },
-    Table {
-        caption: Marroquim2008.says(Caption(1), "Models and rendering performance"),
-        hardware: "Core 2 Duo E6600 2.4 GHz, GeForce 8800 GTS",
-        columns: &["frames/s", "total", "projection", "pull–push"],
-        unit: Unit::Parts,
-        note: "Here: total (projection, pull–push). There 16-bit floats were kept, here 32-bit ones. Parts are by timestamps, which other load on the machine lengthens. Without colours the picture shows normals.",
-        rows: &[
-            row(
-                "Armadillo, without colours",
-                &[173_000],
-                LARGE,
-                Rendering::WithoutColour,
-                &[89.0, 11.0, 1.2, 8.5],
-            ),
-            row("Armadillo", &[173_000], LARGE, POINTS, &[46.0, 22.0, 1.5, 18.0]),
-            row(
-                "Dragon, without colours",
-                &[437_000],
-                LARGE,
-                Rendering::WithoutColour,
-                &[78.0, 13.0, 2.2, 8.9],
-            ),
-            row("Dragon", &[437_000], LARGE, POINTS, &[44.0, 23.0, 2.9, 18.0]),
-            row(
-                "Happy Buddha, without colours",
-                &[544_000],
-                LARGE,
-                Rendering::WithoutColour,
-                &[76.0, 13.0, 2.6, 8.8],
-            ),
-            row("Happy Buddha", &[544_000], LARGE, POINTS, &[42.0, 24.0, 3.4, 18.0]),
-            row(
-                "Asian Dragon, without colours",
-                &[3_610_000],
-                LARGE,
-                Rendering::WithoutColour,
-                &[36.0, 28.0, 18.0, 8.3],
-            ),
-            row("Asian Dragon", &[3_610_000], LARGE, POINTS, &[23.0, 45.0, 25.0, 17.0]),
-            row(
-                "Thai Statue, without colours",
-                &[5_000_000],
-                LARGE,
-                Rendering::WithoutColour,
-                &[29.0, 35.0, 25.0, 8.2],
-            ),
-            row("Thai Statue", &[5_000_000], LARGE, POINTS, &[18.0, 55.0, 34.0, 18.0]),
-        ],
-        says: &DOMINANCE,
-    },
-];
+pub fn all() -> impl Iterator<Item = &'static Table> {
+    let papers = ren2002::TABLES.iter().chain(&botsch2003::TABLES).chain(&zwicker2004::TABLES);
+    papers.chain(&pajarola2004::TABLES).chain(&marroquim2008::TABLES)
+}
 
 impl Table {
     /// Paper and number: the name of the item.
@@ -493,6 +291,3 @@ impl Row {
         self.points.iter().map(of).collect()
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -18,7 +18,7 @@ pub fn text(session: &Session) -> String {
         effect_lines(&mut text, effect, &runs(&session.runs, Experiment::Effects, effect.name));
     }
     cost_lines(&mut text, session);
-    for table in &tables::ALL {
+    for table in tables::all() {
         table_lines(
             &mut text,
             table,

@@ -17,7 +17,7 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
     Ok((any || !costs.is_empty()).then(|| {
         html! {
             @if !costs.is_empty() { h3 { "Costs" } (table_of_costs(page, session, &costs)) }
-            @if any { @for table in &tables::ALL { (one(page, session, table)) } }
+            @if any { @for table in tables::all() { (one(page, session, table)) } }
         }
     }))
 }

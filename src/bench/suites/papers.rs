@@ -8,5 +8,5 @@ use crate::bench::plan::Plan;
 pub(super) fn plans(models: &Models) -> Vec<Plan> {
     let effects = effects::all().flat_map(|effect| effect.plans(models));
     let costs = costs::ALL.iter().flat_map(|cost| cost.plans());
-    effects.chain(costs).chain(tables::ALL.iter().flat_map(|table| table.plans(models))).collect()
+    effects.chain(costs).chain(tables::all().flat_map(|table| table.plans(models))).collect()
 }

@@ -22,7 +22,7 @@ fn items() -> Vec<(String, bool)> {
     let none = Models::default();
     let effects = effects::all().map(|effect| (effect.name.into(), !effect.plans(&none).is_empty()));
     let costs = costs::ALL.iter().map(|cost| (cost.name.into(), true));
-    let tables = tables::ALL.iter().map(|table| (table.source(), !table.plans(&none).is_empty()));
+    let tables = tables::all().map(|table| (table.source(), !table.plans(&none).is_empty()));
     effects.chain(costs).chain(tables).collect()
 }
 
@@ -59,7 +59,7 @@ fn quotations() -> Vec<Quotation> {
     let entries = Paper::VARIANTS.iter().flat_map(|paper| of(*paper)).map(|entry| entry.says);
     let expected = effects::all().flat_map(|effect| effect.expected).map(|expected| expected.says);
     let costs = costs::ALL.iter().filter_map(|cost| Some(cost.says?.quotation));
-    let tables = tables::ALL.iter().flat_map(|table| {
+    let tables = tables::all().flat_map(|table| {
         std::iter::once(table.caption).chain(table.says.iter().map(|statement| statement.quotation))
     });
     entries.chain(expected).chain(costs).chain(tables).collect()

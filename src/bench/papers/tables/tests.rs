@@ -4,7 +4,7 @@ use super::*;
 use crate::bench::papers::costs::{Cost, Ratio};
 
 fn table(source: &str) -> &'static Table {
-    ALL.iter().find(|table| table.source() == source).unwrap()
+    all().find(|table| table.source() == source).unwrap()
 }
 
 /// Splats per second, in millions, as printed beside the frames per second, in the order of the rows.
@@ -72,7 +72,7 @@ fn frames_and_times_of_points_are_consistent() {
 
 #[test]
 fn every_row_has_as_many_numbers_as_columns_and_its_own_run_or_a_reason() {
-    for table in &ALL {
+    for table in all() {
         let (plans, source) = (table.plans(&Models::default()), table.source());
         let rendered = table.rows.iter().filter(|row| row.missing().is_none());
         assert_eq!(plans.len(), rendered.map(|row| row.points.len()).sum::<usize>(), "{source}");
