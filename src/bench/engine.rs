@@ -13,7 +13,7 @@ use crate::settings::methods::Method;
 use crate::settings::{Choice, Settings};
 use crate::verify::baseline::{self, Baseline, Kind};
 use crate::vk::{Device, DeviceDescription, PassTime};
-use crate::{Outputs, Precision, Rasterizer, RasterizerChoice, RenderOptions, Renderer, Scene};
+use crate::{Outputs, Precision, Rasterizer, RenderOptions, Renderer, Scene};
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -133,18 +133,12 @@ pub struct DeviceEngine {
 }
 
 impl DeviceEngine {
-    /// Renders `scene`, which other engines may render, too.
+    /// Renders `scene`, which other engines may render, too, with these options but for the images and the times.
     ///
     /// # Errors
     /// As [`Renderer::new`].
-    pub fn new(
-        device: &Arc<Device>,
-        scene: Rc<Scene>,
-        size: [u32; 2],
-        rasterizer: RasterizerChoice,
-        precision: Precision,
-    ) -> Result<Self> {
-        let colour_only = RenderOptions { size, rasterizer, precision, profile: true, ..Default::default() };
+    pub fn new(device: &Arc<Device>, scene: Rc<Scene>, options: RenderOptions) -> Result<Self> {
+        let colour_only = RenderOptions { profile: true, ..options };
         let outputs = Outputs { normal: true, depth: true, id: false };
         let with_depth = RenderOptions { outputs, profile: false, ..colour_only };
         Ok(Self {

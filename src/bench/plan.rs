@@ -4,7 +4,7 @@ use super::engine::Engine;
 use super::place::Place;
 use super::record::{self, Axes, Experiment, Implementation, Run, RunSettings};
 use crate::settings::methods::Method;
-use crate::settings::{Choice, Settings};
+use crate::settings::{Choice, Hierarchy, Settings};
 use crate::verify::baseline;
 use crate::verify::scenes::Viewpoint;
 
@@ -31,6 +31,8 @@ pub struct Plan {
     pub method: Option<Method>,
     /// The settings.
     pub settings: Settings,
+    /// Where levels of detail come from.
+    pub hierarchy: Hierarchy,
     /// Where the picture is taken from.
     pub place: Place,
     /// What is measured.
@@ -98,12 +100,16 @@ impl Plan {
 
     /// Name in the results.
     pub fn implementation(&self) -> Implementation {
-        match (&self.method, self.engine) {
+        let mut implementation = match (&self.method, self.engine) {
             (Some(method), Engine::Splatting { .. }) => {
                 self.engine.implementation_from(method, &self.settings)
             }
             _ => self.engine.implementation(&self.settings),
+        };
+        if self.hierarchy == Hierarchy::Paper {
+            implementation.variant = format!("{} --hierarchy paper", implementation.variant).trim().into();
         }
+        implementation
     }
 }
 

@@ -1,5 +1,6 @@
 //! Executes plans, and caches what several runs share: surfels, exact pictures, the device.
 
+mod octrees;
 mod truths;
 
 use super::engine::{CpuEngine, DeviceEngine, Engine, LoadedEngine, TracedEngine};
@@ -9,14 +10,13 @@ use super::record::{self, Against, Float64Error, Images, Run, RunSettings, Time}
 use super::stopwatch::Effort;
 use super::subject::{Subject, pixel_angle};
 use super::{error_terms, frame_times, hidden, images, work};
-use crate::Scene;
 use crate::capture::{self, capture};
 use crate::error::{Error, Result};
 use crate::frame::times::Statistics;
 use crate::geometry::{Camera, Levels, Model, Surfels};
 use crate::picture::Picture;
 use crate::settings::splatting::Normalization;
-use crate::settings::{Choice, RasterizerChoice, Settings, Shading};
+use crate::settings::{Choice, Hierarchy, RasterizerChoice, Settings, Shading};
 use crate::verify::metrics::flicker::Flicker;
 use crate::verify::metrics::path::PathValues;
 use crate::verify::metrics::{self, Pair, colour};
@@ -24,6 +24,8 @@ use crate::verify::reference::{self, Expected, Tolerance};
 use crate::verify::scenes::Viewpoint;
 use crate::verify::truth::{self, Truth};
 use crate::vk::Device;
+use crate::{RenderOptions, Scene};
+use octrees::Octrees;
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -62,6 +64,7 @@ pub struct Runner {
     model: Option<(ModelKey, Rc<Model>)>,
     /// The uploaded model, and whether with levels of detail.
     scene: Option<(Rc<Model>, bool, Rc<Scene>)>,
+    octrees: Octrees,
     truths: HashMap<String, Rc<Truth>>,
     images: Vec<Images>,
 }
@@ -95,7 +98,11 @@ impl Opened<'_> {
 struct Job<'a> {
     plan: &'a Plan,
     subject: Rc<Subject>,
+    /// The model, or what is selected of its octree.
     model: Rc<Model>,
+    /// Points of the model.
+    points: u64,
+    octree: Option<record::Octree>,
     viewpoint: Viewpoint,
     camera: Camera,
 }
@@ -109,6 +116,7 @@ impl Runner {
             subject: None,
             model: None,
             scene: None,
+            octrees: Octrees::default(),
             truths: HashMap::new(),
             images: Vec::new(),
         }
@@ -198,7 +206,12 @@ impl Runner {
         self.model = Some((key, model.clone()));
         let viewpoint = viewpoint(plan, &subject);
         let camera = subject.camera(&viewpoint, 0.0, plan.size)?;
-        Ok(Job { plan, subject, model, viewpoint, camera })
+        let points = model.surfels.len() as u64;
+        let (model, octree) = match plan.hierarchy {
+            Hierarchy::Grid => (model, None),
+            Hierarchy::Paper => self.octrees.cut(&model, &camera, plan)?,
+        };
+        Ok(Job { plan, subject, model, points, octree, viewpoint, camera })
     }
 
     fn model(&self, subject: &Subject, key: &ModelKey) -> Result<Model> {
@@ -237,7 +250,7 @@ impl Runner {
         let Opened { job, mut engine } = opened;
         let (plan, settings) = (job.plan, &job.plan.settings);
         let mut run = Run { time, ..blank(plan, Some(job.viewpoint)) };
-        run.points = job.model.surfels.len() as u64;
+        (run.points, run.octree) = (job.points, job.octree);
         run.overlap = job.subject.area().map(|area| overlap(&job.model.surfels, area));
         if let Some(base) = &plan.base {
             run.ratio = self.ratio(&job, &mut *engine, base)?;
@@ -300,8 +313,12 @@ impl Runner {
         match job.plan.engine {
             Engine::Splatting { rasterizer, precision } => {
                 let rasterizer = rasterizer.map_or(self.options.rasterizer, RasterizerChoice::Require);
-                let scene = self.scene(model, job.plan.settings.lod > 0.0)?;
-                Ok(Box::new(DeviceEngine::new(self.device()?, scene, size, rasterizer, precision)?))
+                let of_octree = job.octree.is_some();
+                let scene = self.scene(model, !of_octree && job.plan.settings.lod > 0.0)?;
+                // Confetti's passes are timed apart.
+                let options =
+                    RenderOptions { size, rasterizer, precision, split: of_octree, ..Default::default() };
+                Ok(Box::new(DeviceEngine::new(self.device()?, scene, options)?))
             }
             Engine::Baseline(kind) => Ok(Box::new(CpuEngine::new(&model.surfels, size, kind)?)),
             Engine::Traced => {
@@ -457,6 +474,7 @@ fn blank(plan: &Plan, from: Option<Viewpoint>) -> Run {
         float64_error: None,
         work: Vec::new(),
         memory: Default::default(),
+        octree: None,
         overlap: None,
         blended: None,
         images: None,

@@ -22,7 +22,7 @@ use surfel::bench::suites::UserInputs;
 use surfel::formats::image::{Output, write_png};
 use surfel::frame::times::Interval;
 use surfel::settings::methods::Method;
-use surfel::settings::{Settings, Shading};
+use surfel::settings::{Hierarchy, Settings, Shading};
 use surfel::verify::truth;
 use surfel::vk::{Device, DeviceLimits};
 
@@ -45,6 +45,7 @@ fn plan(scene: &str, points: u64, side: u32) -> Plan {
         engine: Engine::DEFAULT,
         method: None,
         settings: Settings { shading: Shading::Colour, ..splats_alone() },
+        hierarchy: Hierarchy::Grid,
         place: Place::Own,
         measurements: Measurements { time: false, ..Measurements::BOTH },
         base: None,

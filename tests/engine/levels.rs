@@ -172,9 +172,9 @@ fn scenes_with_levels_are_not_updated() {
 }
 
 /// Signal-to-noise ratio of the object's pixels, dB, against the mean over each pixel; and drawn surfels per covered pixel.
-fn quality(
+pub fn quality<'a>(
     device: &Arc<Device>,
-    levels: &Levels,
+    scene: impl Into<Parts<'a>>,
     method: &Method,
     lod: f32,
     exact: &Picture,
@@ -182,7 +182,7 @@ fn quality(
 ) -> (f64, f64) {
     let settings = Settings { lod, shading: Shading::Colour, alpha: Alpha::Coverage, ..method.settings() };
     let options = RenderOptions { size: exact.size, count: true, ..Default::default() };
-    let scene = Scene::upload(device, levels).unwrap();
+    let scene = Scene::upload(device, scene).unwrap();
     let mut renderer = Renderer::new(device, options).unwrap();
     let (picture, report) = renderer.render_picture(&scene, camera, &settings).unwrap();
     let object = || picture.colour.iter().zip(&exact.colour).filter(|(_, exact)| exact[3] > 0.0);

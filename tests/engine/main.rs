@@ -36,6 +36,7 @@ mod mesh_outlines;
 mod papers;
 mod ply_edge;
 mod point_budget;
+mod point_octree;
 mod points;
 mod pull_push;
 mod pull_push_levels;

@@ -120,6 +120,7 @@ pub fn run(experiment: Experiment, scene: &str, points: u64, ms: f64, rmse: f64)
         }),
         work: Vec::new(),
         memory: Memory { scene: 28 * points, splats: 64 * points, targets: 512 * 512 * 48 },
+        octree: None,
         overlap: Some(7.5),
         blended: None,
         images: None,

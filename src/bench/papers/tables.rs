@@ -8,19 +8,20 @@ mod pajarola2004;
 mod ren2002;
 #[cfg(test)]
 mod tests;
+mod unit;
 mod zwicker2004;
 
 use super::method;
 use super::models::{Model, Models};
 use super::quotation::Passage::{Section, Table as Caption};
 use super::quotation::Quotation;
-use crate::bench::engine::Engine;
 use crate::bench::format;
 use crate::bench::plan::{Measurements, Plan};
 use crate::bench::record::{Experiment, Run};
 use crate::bench::suites::{Suite, plan};
 use crate::settings::splatting::{Filter, Normalization, Splatting, Visibility};
-use crate::settings::{Choice, Settings, Shading};
+use crate::settings::{Choice, Hierarchy, Settings, Shading};
+pub use unit::Unit;
 
 /// A table.
 pub struct Table {
@@ -51,19 +52,6 @@ pub struct Statement {
     passes: [&'static [&'static str]; 2],
 }
 
-/// Unit of speed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unit {
-    /// Frames per second.
-    Fps,
-    /// Million splats per second.
-    MillionSplats,
-    /// Seconds per frame.
-    Seconds,
-    /// Milliseconds per frame, beside those of the projection and of pull and push.
-    Parts,
-}
-
 /// A row.
 #[derive(Clone, Copy)]
 pub struct Row {
@@ -91,11 +79,9 @@ enum Rendering {
     SinglePass(&'static str),
     /// `pull-push-paper` without colours: the picture shows normals, whose light costs next to nothing.
     WithoutColour,
-    /// Not rendered, with the reason.
-    Missing(&'static str),
+    /// `confetti-paper` of nodes of the point octree that cover less than this part of the picture, per cent.
+    Octree(f64),
 }
-
-const LEVELS: &str = "needs levels of detail, which this version does not have";
 
 const fn row(
     model: &'static str,
@@ -119,17 +105,12 @@ const PER_SURFEL: Rendering = Rendering::Board(Filter::Object, Normalization::Su
 const PERSPECTIVE: Rendering = Rendering::Preset("perspective-ewa-paper");
 const SINGLE: Rendering = Rendering::SinglePass("perspective-ewa-paper");
 const POINTS: Rendering = Rendering::Preset("pull-push-paper");
-const CONFETTI: Rendering = Rendering::Preset("confetti-paper");
 /// "100k to 650k points" (zwicker2004 section 6).
 const OBJECTS: &[u64] = &[100_000, 300_000, 650_000];
 const SMALL: [u32; 2] = square(512);
 const LARGE: [u32; 2] = square(1024);
 const WIDE: [u32; 2] = [1280, 1024];
 const TINY: [u32; 2] = square(256);
-
-/// Passes before pull, and passes of pull–push.
-const PROJECTION: &[&str] = &["clear", "project", "fetch"];
-const PULL_PUSH: &[&str] = &["pull", "copy", "push"];
 
 /// All tables.
 pub fn all() -> impl Iterator<Item = &'static Table> {
@@ -153,58 +134,13 @@ impl Table {
         let one = |statement: &Statement| {
             let row = self.rows.get(statement.row)?;
             let run = *row.runs(self.caption, runs).first()?;
-            let [longer, shorter] = statement.passes.map(|names| Some((names, sum(run, names)?)));
+            let [longer, shorter] = statement.passes.map(|names| Some((names, unit::sum(run, names)?)));
             let ((long, a), (short, b)) = (longer?, shorter?);
             let [first, second] = [long, short].map(|names| names.join(" + "));
             let [x, y] = [a, b].map(format::ms);
             Some((statement.quotation, format!("{}: {first} {x} ms, {second} {y} ms", row.model), a > b))
         };
         self.says.iter().filter_map(one).collect()
-    }
-}
-
-/// Sum of the medians of passes, ms; none if none was timed.
-fn sum(run: &Run, names: &[&str]) -> Option<f64> {
-    let passes = &run.time.as_ref()?.passes;
-    let own = passes.iter().filter(|pass| names.contains(&pass.name.as_str()));
-    (!passes.is_empty()).then(|| own.map(|pass| pass.ms.median).sum())
-}
-
-impl Unit {
-    /// Text of the unit.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Fps => "frames/s",
-            Self::MillionSplats => "M splats/s",
-            Self::Seconds => "s",
-            Self::Parts => "ms",
-        }
-    }
-
-    /// A time in this unit.
-    pub fn of(self, ms: f64, points: u64) -> f64 {
-        match self {
-            Self::Fps => 1e3 / ms,
-            Self::MillionSplats => 1e-3 * points as f64 / ms,
-            Self::Seconds => 1e-3 * ms,
-            Self::Parts => ms,
-        }
-    }
-
-    /// The mean of runs' times in this unit; of a single run with its parts, if the unit has parts and they are known. None if one was not
-    /// timed.
-    pub fn format(self, runs: &[&Run]) -> Option<String> {
-        let all: Option<Vec<f64>> = runs.iter().map(|run| Some(self.of(run.ms()?, run.points))).collect();
-        let all = all.filter(|all| !all.is_empty())?;
-        let whole = format::significant(all.iter().sum::<f64>() / all.len() as f64, 3);
-        let [run] = runs else { return Some(whole) };
-        let parts = [PROJECTION, PULL_PUSH].map(|names| sum(run, names).map(|ms| format::significant(ms, 3)));
-        match parts {
-            [Some(project), Some(pull_push)] if self == Self::Parts => {
-                Some(format!("{whole} ({project}, {pull_push})"))
-            }
-            _ => Some(whole),
-        }
     }
 }
 
@@ -216,12 +152,12 @@ impl Row {
 
     /// The row's runs among those of its table: of the given model, otherwise of the built-in scene.
     pub fn runs<'a>(&self, caption: Quotation, runs: &[&'a Run]) -> Vec<&'a Run> {
-        let Ok(settings) = self.settings() else { return Vec::new() };
-        let implementation = Engine::DEFAULT.implementation_from(&method(self.preset()), &settings);
+        let settings = self.settings();
+        let implementation = self.plan("", 0).implementation();
         let same = |run: &&&Run| {
             run.size == self.size
                 && run.implementation == implementation
-                && run.settings.shading == settings.shading.name()
+                && (&*run.settings.shading, run.settings.lod) == (settings.shading.name(), settings.lod)
         };
         let own: Vec<&Run> = runs.iter().filter(same).copied().collect();
         let model = self.model(caption);
@@ -234,21 +170,17 @@ impl Row {
         built_in.filter(|run| self.points.contains(&run.points)).collect()
     }
 
-    /// Why the row has no run.
-    pub fn missing(&self) -> Option<&'static str> {
-        self.settings().err()
-    }
-
     fn preset(&self) -> &'static str {
         match self.rendering {
             Rendering::Preset(name) | Rendering::SinglePass(name) => name,
             Rendering::WithoutColour => "pull-push-paper",
+            Rendering::Octree(_) => "confetti-paper",
             _ => "object-ewa-paper",
         }
     }
 
-    /// The settings of the row, or the reason why it is not rendered.
-    fn settings(&self) -> Result<Settings, &'static str> {
+    /// The settings of the row.
+    fn settings(&self) -> Settings {
         let mut settings = method(self.preset()).settings();
         settings.shading = match self.preset() {
             // Neither paper lights its splats.
@@ -257,7 +189,6 @@ impl Row {
         };
         let splatting = &mut settings.splatting;
         match self.rendering {
-            Rendering::Missing(why) => return Err(why),
             Rendering::Board(filter, normalization) => {
                 *splatting = Splatting { filter, normalization, ..*splatting };
             }
@@ -267,13 +198,16 @@ impl Row {
                 *splatting = Splatting { visibility, normalization, ..*splatting };
             }
             Rendering::WithoutColour => settings.shading = Shading::Normal,
+            Rendering::Octree(percent) => {
+                let pixels = f64::from(self.size[0]) * f64::from(self.size[1]);
+                settings.lod = (0.01 * percent * pixels).sqrt() as f32;
+            }
             Rendering::Preset(_) => {}
         }
-        Ok(settings)
+        settings
     }
 
     fn plans(&self, table: &Table, models: &Models) -> Vec<Plan> {
-        let Ok(settings) = self.settings() else { return Vec::new() };
         let given = self.model(table.caption).and_then(|model| models.named(model.paper, model.name));
         let subject = given.map(|given| &given.subject);
         let scene = match (subject, self.rendering) {
@@ -284,10 +218,19 @@ impl Row {
         };
         let of = |points: &u64| {
             let points = subject.and_then(|subject| subject.most_points()).unwrap_or(*points);
-            let plan = plan(Suite::Papers, Experiment::PaperTables, scene, points, self.size);
-            let plan = Plan { measurements: Measurements::TIME, ..plan }.by(&method(self.preset()));
-            Plan { paper_item: table.source(), settings: settings.clone(), ..plan }
+            Plan { paper_item: table.source(), ..self.plan(scene, points) }
         };
         self.points.iter().map(of).collect()
+    }
+
+    /// The plan of the row for a scene.
+    fn plan(&self, scene: &str, points: u64) -> Plan {
+        let plan = plan(Suite::Papers, Experiment::PaperTables, scene, points, self.size);
+        let hierarchy = match self.rendering {
+            Rendering::Octree(_) => Hierarchy::Paper,
+            _ => Hierarchy::Grid,
+        };
+        let plan = Plan { measurements: Measurements::TIME, hierarchy, ..plan }.by(&method(self.preset()));
+        Plan { settings: self.settings(), ..plan }
     }
 }

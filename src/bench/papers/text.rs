@@ -158,13 +158,16 @@ fn table_lines(text: &mut String, table: &Table, runs: &[&Run], session: &Sessio
     let _ = writeln!(text, "\n{source} · {} · there {hardware} · here {machine}", unit.name());
     let _ = writeln!(text, "  {note}");
     let columns = table.columns.iter().map(|name| format!("{name:>12}")).collect::<String>();
-    let _ =
-        writeln!(text, "  {:<32}{:>10}{:>12}{columns}{:>18}  here by", "model", "points", "size px", "here");
+    let _ = writeln!(
+        text,
+        "  {:<32}{:>10}{:>12}{columns}  {:>16}  here by",
+        "model", "points", "size px", "here"
+    );
     for row in table.rows {
         let numbers = row.published.iter().map(|number| format!("{number:>12}")).collect::<String>();
         let (points, size) = (points(row), format::size(row.size));
         let [here, by] = row_result(table, row, runs);
-        let _ = writeln!(text, "  {:<32}{points:>10}{size:>12}{numbers}{here:>18}  {by}", row.model);
+        let _ = writeln!(text, "  {:<32}{points:>10}{size:>12}{numbers}  {here:>16}  {by}", row.model);
     }
     for (quotation, words, holds) in table.statements(runs) {
         let _ = writeln!(text, "  {}: {words}; {quotation}", as_in_the_paper(holds));
@@ -207,9 +210,6 @@ pub(in crate::bench) fn model_words(model: &Model) -> String {
 
 /// The measured number of a row and its run, or why there is none.
 pub(in crate::bench) fn row_result(table: &Table, row: &Row, runs: &[&Run]) -> [String; 2] {
-    if let Some(why) = row.missing() {
-        return ["".into(), format!("none: {why}")];
-    }
     let own = row.runs(table.caption, runs);
     let Some(run) = own.first() else { return ["".into(), "not measured".into()] };
     match (own.iter().find_map(|run| run.refused.as_ref()), table.unit.format(&own)) {

@@ -60,6 +60,9 @@ pub struct Run {
     pub work: Vec<PassWork>,
     /// Memory of the device, or of the host for the CPU baseline.
     pub memory: Memory,
+    /// The point octree, and what was selected of it; none without `--hierarchy paper`.
+    #[serde(default)]
+    pub octree: Option<Octree>,
     /// Discs over a point of the surface, on average, before any filter widens them; none if unknown.
     pub overlap: Option<f64>,
     /// Splats blended per pixel; none unless they were counted.
@@ -86,6 +89,21 @@ pub struct Viewpoint {
     pub up: [f64; 3],
     /// Vertical angle of view, degrees.
     pub fov_y_deg: f64,
+}
+
+/// A point octree, and a selection of it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Octree {
+    /// Nodes, leaves included.
+    pub nodes: u64,
+    /// Bytes of nodes and points.
+    pub bytes: u64,
+    /// Wall time to build it, ms.
+    pub build_ms: f64,
+    /// Surfels that are selected.
+    pub surfels: u64,
+    /// Wall time to select them, ms.
+    pub select_ms: f64,
 }
 
 /// Splats blended per pixel, over the pixels that have any.

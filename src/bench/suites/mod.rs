@@ -22,7 +22,7 @@ use super::plan::{Measurements, Plan};
 use super::record::Experiment;
 use super::stopwatch::Effort;
 use crate::settings::methods::{Method, perspective_ewa, pull_push};
-use crate::settings::{Choice, Settings, Shading, Widen};
+use crate::settings::{Choice, Hierarchy, Settings, Shading, Widen};
 use crate::verify::baseline::Kind;
 use crate::verify::scenes;
 use crate::verify::truth;
@@ -119,6 +119,7 @@ pub(super) fn plan(suite: Suite, experiment: Experiment, scene: &str, points: u6
         size,
         engine: Engine::DEFAULT,
         method: None,
+        hierarchy: Hierarchy::Grid,
         settings: Settings { shading, ..Default::default() },
         place: Place::Own,
         measurements: Measurements::BOTH,

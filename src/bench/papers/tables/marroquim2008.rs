@@ -1,5 +1,6 @@
 //! *Efficient image reconstruction for point-based and line-based rendering*.
 
+use super::unit::{PROJECTION, PULL_PUSH};
 use super::*;
 use crate::bench::papers::quotation::Paper::Marroquim2008 as PAPER;
 
