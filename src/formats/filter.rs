@@ -1,11 +1,14 @@
 //! Which points of a file are read.
 
+mod counts;
 #[cfg(test)]
 mod tests;
 
+pub(super) use counts::RowCounts;
+pub use counts::{FilterCounts, class_name};
+
 use super::declared::{Element, Kind};
 use super::source::Parsed;
-use crate::error::Cause;
 use std::num::NonZeroU64;
 
 /// Conditions that all points that are read meet. Faces and lines of points that are left out are left out, too.
@@ -71,16 +74,23 @@ impl Filter {
         ]
     }
 
-    /// Indices of the needed properties among those of the points; an error if one is missing.
-    pub(super) fn columns(&self, points: &Element) -> Parsed<[Option<usize>; 3]> {
+    /// Indices of the [`PROPERTIES`] among those of the points: of the needed ones, or an error if one is missing; and of the others that there
+    /// are, if points are to be counted by them.
+    pub(super) fn columns(&self, points: &Element, counts: bool) -> Parsed<[Option<usize>; 3]> {
         let mut columns = [None; 3];
-        for (index, name) in PROPERTIES.iter().enumerate().filter(|(index, _)| self.needs()[*index]) {
+        for (index, name) in PROPERTIES.iter().enumerate() {
+            let is_needed = self.needs()[index];
+            if !(is_needed || counts) {
+                continue;
+            }
             let is = |property: &super::declared::Property| {
                 property.name == *name && matches!(property.kind, Kind::Scalar(_))
             };
-            let missing =
-                || Cause::from(format!("its points have no `{name}`: read them without a filter by it"));
-            columns[index] = Some(points.properties.iter().position(is).ok_or_else(missing)?);
+            columns[index] = points.properties.iter().position(is);
+            if is_needed && columns[index].is_none() {
+                let missing = format!("its points have no `{name}`: read them without a filter by it");
+                return Err(missing.into());
+            }
         }
         Ok(columns)
     }
@@ -88,11 +98,18 @@ impl Filter {
     /// Whether a point with these values of the [`PROPERTIES`] is read.
     pub(super) fn keeps(&self, [class, number, count]: [f64; 3]) -> bool {
         let of_class = |classes: &Vec<u8>| classes.iter().any(|own| f64::from(*own) == class);
-        let of_pulse = |returns: Returns| match returns {
-            Returns::First => number == 1.0,
-            Returns::Last => number == count,
-            Returns::Single => count == 1.0,
-        };
+        let of_pulse = |returns: Returns| returns.keeps(number, count);
         self.classes.as_ref().is_none_or(of_class) && self.returns.is_none_or(of_pulse)
+    }
+}
+
+impl Returns {
+    /// Whether return `number` of a pulse with `count` of them is one of these.
+    fn keeps(self, number: f64, count: f64) -> bool {
+        match self {
+            Self::First => number == 1.0,
+            Self::Last => number == count,
+            Self::Single => count == 1.0,
+        }
     }
 }

@@ -52,7 +52,7 @@ mod up;
 mod writer;
 
 pub use attributes::{Attribute, Values, WantedAttributes};
-pub use filter::{Filter, Returns};
+pub use filter::{Filter, FilterCounts, Returns, class_name};
 pub use reader::{Inspected, Loaded, ReadOptions, extensions, inspect, read, read_bytes};
 pub use report::{Dropped, Faces, Lines, Report};
 pub use survey::Survey;

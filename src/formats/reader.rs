@@ -94,6 +94,8 @@ pub struct ReadOptions {
     pub intensity: bool,
     /// Which points are read.
     pub filter: Filter,
+    /// Whether points are counted by class and return: [`Report::counts`](super::Report::counts).
+    pub counts: bool,
     /// Names of the columns of a text file, instead of its own.
     pub columns: Option<Vec<String>>,
     /// Whether triangles are kept even if every point has a normal and a radius.

@@ -1,6 +1,7 @@
 //! Report of reading a file.
 
 use super::declared::{Element, Encoding};
+use super::filter::FilterCounts;
 use super::survey::Survey;
 use super::table::{Layout, Points, Shape};
 use glam::DVec3;
@@ -31,6 +32,8 @@ pub struct Report {
     pub points: u64,
     /// Dropped vertices.
     pub dropped: Dropped,
+    /// Numbers of points by class and return, if [`ReadOptions::counts`](super::ReadOptions::counts) wants them.
+    pub counts: Option<FilterCounts>,
     /// Invalid clip lines: not finite, without a normal, or orthogonal to the tangent plane.
     pub clip_lines_dropped: u64,
     /// Invalid normalization weights: not finite, or not above 0.
@@ -72,6 +75,7 @@ impl Report {
             skipped_elements: Vec::new(),
             points: element.count,
             dropped: points.dropped,
+            counts: points.counts.clone(),
             clip_lines_dropped: points.clip_lines,
             weights_dropped: points.weights,
             materials_dropped: 0,

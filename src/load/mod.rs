@@ -13,7 +13,9 @@ pub use shading::SuggestedShading;
 pub use suggestion::{Suggestion, Uncoloured};
 
 use crate::estimate::{Estimate, Estimated};
-use crate::formats::{self, Dropped, Filter, Loaded, PointSource, ReadOptions, Report, WantedAttributes};
+use crate::formats::{
+    self, Dropped, Filter, FilterCounts, Loaded, PointSource, ReadOptions, Report, WantedAttributes,
+};
 use crate::geometry::{Cloud, Lined, MipMap, Model, ToLines};
 use crate::settings::Settings;
 #[cfg(feature = "scenes")]
@@ -35,6 +37,8 @@ pub struct LoadOptions {
     pub columns: Option<Vec<String>>,
     /// Which points of files are read.
     pub filter: Filter,
+    /// Whether points are counted by class and return: [`LoadedModel::counts`].
+    pub counts: bool,
     /// How faces are converted to lines; `None` keeps them.
     pub lines: Option<ToLines>,
     /// Tolerance of the simplification of lines, in the positions' unit; `None` keeps all vertices.
@@ -97,6 +101,8 @@ pub struct LoadedModel {
     pub read: u64,
     /// Counts of dropped points.
     pub dropped: Dropped,
+    /// Numbers of points by class and return, of what all inputs have, if they are wanted.
+    pub counts: FilterCounts,
     /// Where normals and radii come from.
     pub estimated: Estimated,
     /// The up direction, a unit vector: the requested one, otherwise that of the first input, as [`Loaded::up`].
@@ -152,6 +158,7 @@ impl Load<'_> {
         let (mut parts, mut read, mut dropped) = (Vec::new(), 0, Dropped::default());
         let (mut skipped, mut faces): (Vec<String>, Vec<u64>) = Default::default();
         let (mut sources, mut points): (Vec<PointSource>, usize) = Default::default();
+        let mut counts: Option<FilterCounts> = None;
         for input in inputs {
             let (part, source, report) = self.read(input, points)?;
             points += source.points;
@@ -159,6 +166,8 @@ impl Load<'_> {
             let triangles = part.cloud.triangles.len() as u64;
             faces.push(report.as_ref().map_or(triangles, |report| report.faces.understood));
             read += report.as_ref().map_or(part.cloud.len() as u64, |report| report.points);
+            let own = report.as_ref().and_then(|report| report.counts.clone()).unwrap_or_default();
+            counts = Some(counts.map_or(own.clone(), |counts| counts.merge(own)));
             if let Some(report) = report {
                 skipped.extend(report.skipped);
                 dropped.position += report.dropped.position;
@@ -194,6 +203,7 @@ impl Load<'_> {
             model,
             read,
             dropped,
+            counts: counts.unwrap_or_default(),
             estimated,
             up,
             coloured,
@@ -262,6 +272,7 @@ impl Load<'_> {
             scalar: self.property().map(str::to_owned),
             intensity: self.options.uncoloured != Uncoloured::Plain,
             filter: self.options.filter.clone(),
+            counts: self.options.counts,
             columns: self.options.columns.clone(),
             triangles: self.draws_faces(),
             texture: self.options.texture.clone(),

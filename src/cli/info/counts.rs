@@ -1,40 +1,13 @@
 //! Numbers of points by class and by return.
 
 use std::collections::BTreeMap;
-use surfel::formats::{Attribute, WantedAttributes};
+use surfel::formats::{Attribute, WantedAttributes, class_name};
 use surfel::thousands;
 
 /// Name of the class of a point.
 const CLASS: &str = "classification";
 /// Name of the number of a point's return.
 const RETURN: &str = "return_number";
-
-/// Names of the standard classes from 0 on (ASPRS LAS specification 1.4 R15, table 17).
-const CLASSES: [&str; 23] = [
-    "never classified",
-    "unclassified",
-    "ground",
-    "low vegetation",
-    "medium vegetation",
-    "high vegetation",
-    "building",
-    "low noise",
-    "reserved",
-    "water",
-    "rail",
-    "road surface",
-    "reserved",
-    "wire guard",
-    "wire conductor",
-    "transmission tower",
-    "wire connector",
-    "bridge deck",
-    "high noise",
-    "overhead structure",
-    "ignored ground",
-    "snow",
-    "temporal exclusion",
-];
 
 /// Points by number.
 pub type Counts = BTreeMap<i64, u64>;
@@ -65,8 +38,7 @@ fn of(attributes: &[Attribute], name: &str) -> Option<Counts> {
 
 /// A line for each kind of counts.
 pub fn text(attributes: &[Attribute]) -> String {
-    let name = |class: i64| usize::try_from(class).ok().and_then(|class| CLASSES.get(class));
-    let class = |(class, count): (i64, u64)| match name(class) {
+    let class = |(class, count): (i64, u64)| match class_name(class) {
         Some(name) => format!("{} of {class} ({name})", thousands(count)),
         None => format!("{} of {class}", thousands(count)),
     };

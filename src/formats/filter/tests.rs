@@ -9,6 +9,19 @@ fn one_in(every: u64) -> ReadOptions {
     ReadOptions { filter: Filter { every: NonZeroU64::new(every), ..Default::default() }, ..all() }
 }
 
+#[test]
+fn counts_of_two_files_are_added_and_what_one_lacks_is_not_counted() {
+    let counts = |classes: &[(u8, u64)], returns| FilterCounts {
+        classes: Some(classes.iter().copied().collect()),
+        returns,
+    };
+    let (a, b) = (counts(&[(1, 5), (2, 1)], Some([3, 2, 1])), counts(&[(2, 4), (9, 1)], Some([1, 1, 1])));
+    let both = counts(&[(1, 5), (2, 5), (9, 1)], Some([4, 3, 2]));
+    assert_eq!(a.clone().merge(b), both);
+    assert_eq!(a.clone().merge(counts(&[], None)).returns, None);
+    assert_eq!(a.merge(FilterCounts::default()), FilterCounts::default());
+}
+
 /// A sample file by its name.
 fn sample(name: &str) -> (String, Vec<u8>) {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/formats/");

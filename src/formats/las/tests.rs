@@ -259,6 +259,33 @@ fn many_points_get_their_origin_from_some() {
 }
 
 #[test]
+fn points_are_counted_by_class_and_return_whatever_the_filter_keeps() {
+    use crate::formats::{Filter, FilterCounts};
+    let read = |name: &str, filter: Filter, counts| {
+        let options = ReadOptions { filter, counts, ..Default::default() };
+        read_bytes(name, &bytes(name), &options).unwrap().report
+    };
+    // Point i is of class i mod 32 and is return i mod 5 + 1 of five.
+    let counts = FilterCounts {
+        classes: Some((0..32).map(|class| (class, if class < 28 { 2 } else { 1 })).collect()),
+        returns: Some([12, 12, 0]),
+    };
+    let some = Filter { classes: Some(vec![3]), ..Default::default() };
+    for name in ["format7.laz", "format7.las", "format1.laz"] {
+        for filter in [Filter::default(), some.clone()] {
+            let report = read(name, filter.clone(), true);
+            assert_eq!(report.counts.as_ref(), Some(&counts), "{name}");
+            // Neither counting nor filtering makes a model hold the class.
+            assert!(report.skipped.contains(&"classification".into()), "{name}: {:?}", report.skipped);
+            assert_eq!(read(name, filter, false).counts, None);
+        }
+    }
+    let bare = ReadOptions { counts: true, ..Default::default() };
+    let bare = read_bytes("a.xyz", b"1 2 3\n", &bare).unwrap().report;
+    assert_eq!(bare.counts, Some(FilterCounts::default()), "it has neither classes nor returns");
+}
+
+#[test]
 fn classes_and_returns_are_selected() {
     use crate::formats::{Filter, Returns};
     let read = |filter: Filter| {

@@ -27,13 +27,13 @@ pub(super) fn read_in_order<R: Reader>(
         }
         rows += 1;
         if rows == ROWS {
-            tally = tally.merge(convert_next(&mut block, layout, first, &mut out));
+            tally.add(convert_next(&mut block, layout, first, &mut out));
             block.set_rows(ROWS);
             (first, rows) = (first + ROWS as u64, 0);
         }
         Ok(())
     })?;
     block.set_rows(rows);
-    tally = tally.merge(convert_next(&mut block, layout, first, &mut out));
+    tally.add(convert_next(&mut block, layout, first, &mut out));
     Ok((arrays, tally))
 }

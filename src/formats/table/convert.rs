@@ -9,6 +9,7 @@ use super::columns::{
 use super::layout::{Colour, Layout, Shape};
 use super::shape::{self, Disc};
 use crate::formats::declared::Scalar;
+use crate::formats::filter::RowCounts;
 use crate::geometry::srgb;
 use crate::geometry::{Clip, ClipLine, Materials};
 use glam::{DVec2, DVec3, Vec2, Vec3};
@@ -23,7 +24,7 @@ const OPAQUE: f64 = 0.1;
 const HARMONIC: f64 = 0.282_094_791_773_878_14;
 
 /// Counts of dropped values, and whether the points are complete.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Default)]
 pub struct Tally {
     pub dropped: u64,
     pub transparent: u64,
@@ -35,18 +36,23 @@ pub struct Tally {
     pub weights: u64,
     /// Whether a normal or a radius is missing.
     pub lacking: bool,
+    /// Counts by class and return, if the layout has them.
+    pub counts: Option<Box<RowCounts>>,
 }
 
 impl Tally {
-    pub fn merge(self, other: Self) -> Self {
-        Self {
-            dropped: self.dropped + other.dropped,
-            transparent: self.transparent + other.transparent,
-            thinned: self.thinned + other.thinned,
-            filtered: self.filtered + other.filtered,
-            clip_lines: self.clip_lines + other.clip_lines,
-            weights: self.weights + other.weights,
-            lacking: self.lacking || other.lacking,
+    /// Adds other counts.
+    pub fn add(&mut self, other: Self) {
+        self.dropped += other.dropped;
+        self.transparent += other.transparent;
+        self.thinned += other.thinned;
+        self.filtered += other.filtered;
+        self.clip_lines += other.clip_lines;
+        self.weights += other.weights;
+        self.lacking |= other.lacking;
+        match (&mut self.counts, other.counts) {
+            (Some(all), Some(others)) => all.add(&others),
+            (all, others) => *all = all.take().or(others),
         }
     }
 }
@@ -91,6 +97,10 @@ pub fn convert(block: &Block, layout: &Layout, out: &mut Slices) -> Tally {
         values.store(block.column(COLUMNS + index));
     }
     out.scalar.iter_mut().zip(block.column(SCALAR)).for_each(|(to, value)| *to = *value);
+    if layout.counts {
+        let columns = [0, 1, 2].map(|index| block.column(FILTER + index));
+        tally.counts = Some(Box::new(RowCounts::of(columns)));
+    }
     // Here, while the entries are in the cache.
     tally.lacking = !layout.has_normals() || !layout.has_radii();
     tally.lacking |= out.normals.contains(&Vec3::ZERO) || out.radii.contains(&0.0);

@@ -36,7 +36,7 @@ impl Rows<'_> {
         fill(self.block);
         let rows = self.block.rows();
         self.left -= rows;
-        self.tally = self.tally.merge(convert_next(self.block, self.layout, self.first, &mut self.out));
+        self.tally.add(convert_next(self.block, self.layout, self.first, &mut self.out));
         self.first += rows as u64;
     }
 }
@@ -83,7 +83,9 @@ pub fn fill<S>(
     } else {
         pieces.into_iter().par_bridge().map_init(scratch, run).collect()
     };
-    Ok(tallies?.into_iter().fold(Tally::default(), Tally::merge))
+    let mut all = Tally::default();
+    tallies?.into_iter().for_each(|tally| all.add(tally));
+    Ok(all)
 }
 
 /// Consecutive rows of a table, and the entries of those that are kept.

@@ -53,6 +53,8 @@ pub struct Layout {
     pub diameters: bool,
     /// Which points are kept.
     pub filter: Filter,
+    /// Whether points are counted by the properties of the filter that they have.
+    pub counts: bool,
     /// Property index and type of each attribute; its column comes after the others.
     pub attributes: Vec<(usize, Scalar)>,
 }
@@ -76,6 +78,7 @@ impl Layout {
             narrow,
             origin: None,
             filter: options.filter.clone(),
+            counts: options.counts,
             attributes: Vec::new(),
             diameters: false,
         };
@@ -88,7 +91,7 @@ impl Layout {
             layout.find_lines(&find);
         }
         layout.find_attributes(properties, &options.attributes);
-        layout.columns[FILTER..].copy_from_slice(&options.filter.columns(vertex)?);
+        layout.columns[FILTER..].copy_from_slice(&options.filter.columns(vertex, options.counts)?);
         if let Some(name) = options.chosen(vertex) {
             layout.fill(SCALAR, [find.one(name).ok_or_else(|| no_scalar(name, properties))?]);
         }
@@ -234,9 +237,9 @@ impl Layout {
         self.columns[column].is_some()
     }
 
-    /// Whether property `index` fills a column.
+    /// Whether property `index` fills a column of the points; those of the filter only choose them.
     pub fn uses(&self, index: usize) -> bool {
-        self.columns.contains(&Some(index))
+        self.columns[..FILTER].contains(&Some(index))
     }
 
     /// Whether the file provides normals.

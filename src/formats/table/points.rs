@@ -1,13 +1,14 @@
 //! From arrays to a cloud: removes and counts invalid points, and makes positions relative in float64.
 
 use super::arrays::Arrays;
+use super::columns::FILTER;
 use super::convert::Tally;
 use super::layout::Layout;
 use crate::error::Cause;
-use crate::formats::Dropped;
 use crate::formats::attributes::{Attribute, Values};
 use crate::formats::declared::Element;
 use crate::formats::source::Parsed;
+use crate::formats::{Dropped, FilterCounts};
 use crate::geometry::{Clip, Clips, Cloud, Colours, Weights};
 use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
@@ -41,6 +42,8 @@ pub struct Points {
     pub clip_lines: u64,
     /// Number of invalid normalization weights.
     pub weights: u64,
+    /// Counts by class and return, if the layout has them.
+    pub counts: Option<FilterCounts>,
     /// Texture coordinates, if any.
     pub coordinates: Vec<Vec2>,
     /// Material indices, if any.
@@ -69,7 +72,8 @@ impl Points {
         let attributes = std::mem::take(&mut arrays.attributes);
         let cloud = cloud(arrays, layout.origin);
         let step = layout.filter.step();
-        let Tally { lacking, clip_lines, weights, .. } = tally;
+        let Tally { lacking, clip_lines, weights, counts, .. } = tally;
+        let has = [0, 1, 2].map(|index| layout.fills(FILTER + index));
         Ok(Self {
             cloud: if step > 1 { cloud.without_sizes() } else { cloud },
             dropped,
@@ -79,6 +83,7 @@ impl Points {
             lacking,
             clip_lines,
             weights,
+            counts: counts.map(|counts| counts.of_points(has)),
             coordinates,
             materials,
             attributes,
