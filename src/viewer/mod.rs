@@ -13,6 +13,7 @@ mod cached_view;
 mod choices;
 mod comparison;
 mod directions;
+mod distribution;
 mod events;
 mod exact_surface;
 mod hud;

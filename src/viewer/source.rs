@@ -1,6 +1,7 @@
 //! Source of a scene: the model that it was uploaded from, and the appearance that the user gives it.
 
 use super::appearance::{Appearance, ColourAttribute, SavedAppearance};
+use super::distribution::Distribution;
 use super::exact_surface::ExactSurface;
 use super::job::Job;
 use super::scene_info::SceneInfo;
@@ -34,8 +35,8 @@ pub struct Source {
     pub wanted: Appearance,
     /// The appearance of the scene on the device.
     applied: Appearance,
-    /// The default range of each attribute that was needed so far.
-    default_ranges: Vec<(ColourAttribute, Option<ValueRange>)>,
+    /// The distribution of each attribute that was needed so far.
+    distributions: Vec<(ColourAttribute, Option<Arc<Distribution>>)>,
     /// Format in which the device stores the surfels.
     pub format: SurfelFormat,
     info: SceneInfo,
@@ -71,7 +72,7 @@ impl Source {
             missing: None,
             wanted: Appearance::own(),
             applied: Appearance::own(),
-            default_ranges: Vec::new(),
+            distributions: Vec::new(),
             format,
             info,
             up,
@@ -229,15 +230,20 @@ impl Source {
         Some([self.model.surfels.values(quantity), self.model.primitives.values(quantity)])
     }
 
-    /// The default range of an attribute: from the 1st to the 99th percentile of its values.
-    pub fn default_range(&mut self, attribute: ColourAttribute) -> Option<ValueRange> {
-        if let Some((_, known)) = self.default_ranges.iter().find(|(known, _)| *known == attribute) {
-            return *known;
+    /// The distribution of an attribute's values; `None` if it has none or they are not read yet.
+    pub fn distribution(&mut self, attribute: ColourAttribute) -> Option<Arc<Distribution>> {
+        if let Some((_, known)) = self.distributions.iter().find(|(known, _)| *known == attribute) {
+            return known.clone();
         }
         let [surfels, vertices] = self.values(attribute)?;
-        let range = ValueRange::of(surfels.into_iter().chain(vertices)).map(|(range, _)| range);
-        self.default_ranges.push((attribute, range));
-        range
+        let found = Distribution::of(surfels.iter().chain(&vertices).copied()).map(Arc::new);
+        self.distributions.push((attribute, found.clone()));
+        found
+    }
+
+    /// The default range of an attribute.
+    fn default_range(&mut self, attribute: ColourAttribute) -> Option<ValueRange> {
+        self.distribution(attribute).map(|distribution| distribution.range)
     }
 
     /// The appearance that the user wants, for [`Source::restore`].
@@ -258,8 +264,8 @@ impl Source {
     /// The range of the colours, if it is not the default one.
     fn chosen_range(&self) -> Option<ValueRange> {
         let Appearance { attribute, range, .. } = self.wanted;
-        let default = self.default_ranges.iter().find(|(known, _)| *known == attribute);
-        let default = default.and_then(|(_, default)| *default);
+        let known = self.distributions.iter().find(|(known, _)| *known == attribute);
+        let default = known.and_then(|(_, known)| known.as_ref()).map(|known| known.range);
         (self.wanted.scale().is_some() && default != Some(range)).then_some(range)
     }
 
@@ -286,7 +292,7 @@ impl Source {
             read: self.read.clone(),
             reading: None,
             missing: None,
-            default_ranges: self.default_ranges.clone(),
+            distributions: self.distributions.clone(),
             info: self.info.clone(),
             ..*self
         }

@@ -5,6 +5,7 @@ mod buffers;
 mod error;
 mod help;
 mod kernel;
+mod histogram;
 mod legend;
 mod method;
 mod raster;

@@ -1,6 +1,7 @@
 //! Raster: values of pixels, shown as a picture with a colour map and a range.
 
 use super::render_settings;
+use crate::viewer::distribution::Distribution;
 use egui::{
     Align2, Color32, ColorImage, Context, FontId, Image, Painter, Rect, Sense, TextureHandle, TextureOptions,
     Ui, Window, pos2, vec2,
@@ -19,7 +20,8 @@ pub struct Raster {
     values: Values,
     map: ColourMap,
     range: ValueRange,
-    default_range: Option<ValueRange>,
+    /// Of the numbers, if there are any.
+    distribution: Option<Distribution>,
     /// The texture, and the scale that it was made with.
     texture: Option<(TextureHandle, ColourScale)>,
 }
@@ -35,19 +37,18 @@ pub enum Values {
 impl Raster {
     /// A raster with the default colour map, in its default range.
     pub fn new(name: impl Into<String>, size: [u32; 2], values: Values) -> Self {
-        let default_range = match &values {
-            Values::Numbers(numbers) => ValueRange::of(numbers.iter().copied().map(f64::from)),
+        let distribution = match &values {
+            Values::Numbers(numbers) => Distribution::of(numbers.iter().copied().map(f64::from)),
             Values::Directions(_) => None,
         };
-        let default_range = default_range.map(|(range, _)| range);
-        let range = default_range.unwrap_or(ValueRange { min: 0.0, max: 1.0 });
+        let range = distribution.as_ref().map_or(ValueRange { min: 0.0, max: 1.0 }, |known| known.range);
         Self {
             name: name.into(),
             size,
             values,
             map: ColourMap::default(),
             range,
-            default_range,
+            distribution,
             texture: None,
         }
     }
@@ -70,7 +71,7 @@ impl Raster {
             .show(context, |ui| {
                 if let Values::Numbers(_) = self.values {
                     render_settings::map(ui, &mut self.map);
-                    render_settings::range(ui, &mut self.range, self.default_range);
+                    render_settings::range(ui, &mut self.range, self.map, self.distribution.as_ref());
                     colour_bar(ui, &self.scale());
                 }
                 self.picture(ui);

@@ -1,9 +1,11 @@
 //! Render settings panel: shading, colours, background, radii.
 
+use super::histogram;
 use super::raster::short;
 use super::widgets::{choice, choice_combo, combo};
 use crate::viewer::appearance::ColourAttribute;
 use crate::viewer::choices::Choices;
+use crate::viewer::distribution::Distribution;
 use egui::{DragValue, ProgressBar, Slider, SliderClamping, Ui};
 use surfel::Settings;
 use surfel::geometry::{ColourMap, ValueRange};
@@ -87,8 +89,8 @@ fn colours(ui: &mut Ui, choices: &mut Choices<'_>) {
         return;
     }
     map(ui, &mut source.wanted.map);
-    let default = source.default_range(source.wanted.attribute);
-    range(ui, &mut source.wanted.range, default);
+    let distribution = source.distribution(source.wanted.attribute);
+    range(ui, &mut source.wanted.range, source.wanted.map, distribution.as_deref());
     ui.weak("With the shading `color`, surfels have exactly these colours.");
 }
 
@@ -97,8 +99,11 @@ pub fn map(ui: &mut Ui, map: &mut ColourMap) {
     choice_combo(ui, "colours", map, Some("Colour map of the values."));
 }
 
-/// Shows the values at both ends of the colour map, and a button for the default range, if there is one.
-pub fn range(ui: &mut Ui, range: &mut ValueRange, default: Option<ValueRange>) {
+/// Shows the values at both ends of the colour map; and the distribution of the values, if there are any, with a button for the default range.
+pub fn range(ui: &mut Ui, range: &mut ValueRange, map: ColourMap, distribution: Option<&Distribution>) {
+    if let Some(distribution) = distribution {
+        histogram::show(ui, distribution, map, range);
+    }
     ui.horizontal(|ui| {
         let speed = (0.005 * (range.max - range.min)).abs().max(f64::MIN_POSITIVE);
         let ValueRange { min, max } = range;
@@ -107,10 +112,10 @@ pub fn range(ui: &mut Ui, range: &mut ValueRange, default: Option<ValueRange>) {
         ui.label("to");
         ui.add(DragValue::new(max).speed(speed).custom_formatter(|value, _| short(value)))
             .on_hover_text("Greater values have the last colour.");
-        if let Some(default) = default
+        if let Some(Distribution { range: default, .. }) = distribution
             && ui.button("default").on_hover_text("From the 1st to the 99th percentile.").clicked()
         {
-            *range = default;
+            *range = *default;
         }
     });
 }
