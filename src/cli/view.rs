@@ -6,12 +6,13 @@ use super::args::{self, View};
 use super::files::config_folder;
 use super::progress::{self, Silent};
 use super::{camera, rasterizers, render, vulkan};
-use crate::viewer::{self, Loaded, SceneInfo};
+use crate::viewer::{self, LoadRequest, Loaded, SceneInfo};
 use glam::DVec3;
 use std::ffi::OsString;
 use std::sync::Arc;
 use std::time::Instant;
 use surfel::estimate::Estimate;
+use surfel::formats::Filter;
 use surfel::geometry::{Colours, Extent, Model, SurfelFormat};
 use surfel::load::{
     Colouring, Listener, LoadOptions, Preview, SuggestedShading, Suggestion, Uncoloured, load, scene,
@@ -45,6 +46,7 @@ pub fn run(args: View) -> Result<()> {
         move |extent: &Extent, up, size| given.then(|| camera::pose(&cameras, pose, extent, up, size));
     let options = viewer::Options {
         inputs: args.inputs.clone(),
+        filter: args.points.filter(),
         size: args.size,
         device: vulkan::options(&args.device)?,
         rasterizer: args.rasterizer,
@@ -82,7 +84,7 @@ fn loader(args: &View, method: Option<Method>, up: Option<DVec3>) -> Result<view
     let points = method.is_some_and(|method| args.settings(&method).draws_points());
     let options = LoadOptions {
         columns: args.points.columns.clone(),
-        filter: args.points.filter(),
+        counts: true,
         estimate: Estimate { bare: points, ..args.points.estimate() },
         polygons: args.points.polygons,
         points: args.points.points,
@@ -95,7 +97,9 @@ fn loader(args: &View, method: Option<Method>, up: Option<DVec3>) -> Result<view
     let [shading_given, ao_given] = args.render_settings.chosen_shading();
     // The triangles belong to the inputs of the command, not to files that are opened later.
     let (truth, own) = (args.truth.clone(), args.inputs.clone());
-    Ok(Arc::new(move |names: &[OsString], window: &dyn viewer::LoadListener| {
+    Ok(Arc::new(move |request: &LoadRequest, window: &dyn viewer::LoadListener| {
+        let names = &request.inputs;
+        let reader = reader.filtered(&request.filter);
         let loaded = |model: Model, up: DVec3, suggestion: Option<Suggestion>| -> Result<Loaded> {
             let method = render::method(method, &model)?;
             let info = SceneInfo { names: names.iter().map(display_name).collect(), ..Default::default() };
@@ -112,7 +116,7 @@ fn loader(args: &View, method: Option<Method>, up: Option<DVec3>) -> Result<view
         let whole = loaded(inputs.model, inputs.up, inputs.suggestion)?;
         // Built-in scenes have no properties to read.
         let is_scene = names.iter().any(|name| scene(name).is_some());
-        let (reader, own) = (reader.clone(), names.to_vec());
+        let own = names.clone();
         let read = move |name: &str, progress: &dyn Progress| reader.property(&own, name, progress);
         let skipped = if is_scene { vec![] } else { inputs.skipped };
         Ok(Loaded {
@@ -124,6 +128,7 @@ fn loader(args: &View, method: Option<Method>, up: Option<DVec3>) -> Result<view
                 points: inputs.read,
                 dropped: inputs.dropped.total(),
                 estimated: inputs.estimated.summary(),
+                counts: inputs.counts,
                 ..whole.info
             },
             ..whole
@@ -178,11 +183,21 @@ struct Reader {
 }
 
 impl Reader {
+    /// The reader of some of the points.
+    fn filtered(&self, filter: &Filter) -> Self {
+        let options = LoadOptions { filter: filter.clone(), ..self.options.clone() };
+        Self { options, ..*self }
+    }
+
     /// Reads a property of every surfel, and of every vertex of lines and triangles.
     fn property(&self, names: &[OsString], name: &str, progress: &dyn Progress) -> Result<[Vec<f32>; 2]> {
         let estimate = Estimate { radius: None, sharp: None, ..self.options.estimate.clone() };
-        let options =
-            LoadOptions { estimate, colouring: Some(Colouring::values(name)), ..self.options.clone() };
+        let options = LoadOptions {
+            estimate,
+            colouring: Some(Colouring::values(name)),
+            counts: false,
+            ..self.options.clone()
+        };
         let Model { surfels, primitives } = load(names, &options, &Silent(progress))?.model;
         let numbers = |colours| match colours {
             Some(Colours::Linear(numbers)) => numbers.into_iter().map(|[number, ..]| number).collect(),
@@ -226,10 +241,10 @@ mod tests {
     }
 
     fn loaded(input: impl Into<OsString>, window: &Window) -> Result<viewer::Loaded> {
-        let input = [input.into()];
+        let request = LoadRequest { inputs: vec![input.into()], ..Default::default() };
         let command = ["surfel", "view", "-q", "x.ply"];
         let Command::View(args) = Surfel::try_parse_from(command).unwrap().command else { panic!("no view") };
-        loader(&args, None, None)?(&input, window)
+        loader(&args, None, None)?(&request, window)
     }
 
     #[test]
@@ -282,7 +297,8 @@ mod tests {
         let Command::View(args) = Surfel::try_parse_from(command).unwrap().command else { panic!("no view") };
         let load = loader(&args, None, None).unwrap();
         for inputs in [&names[..1], &names[..]] {
-            let loaded = load(inputs, &Window::default()).unwrap();
+            let request = LoadRequest { inputs: inputs.to_vec(), ..Default::default() };
+            let loaded = load(&request, &Window::default()).unwrap();
             let by = loaded.colour_by.unwrap();
             assert_eq!((by.name.as_str(), by.map), ("heat", surfel::geometry::ColourMap::Magma));
             assert!(loaded.model.surfels.colours.is_none(), "the panel colours them");

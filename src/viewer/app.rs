@@ -2,6 +2,7 @@
 
 mod device;
 mod files;
+mod filter;
 mod input;
 
 use super::events::Event;
@@ -15,9 +16,8 @@ use super::screenshots::Screenshots;
 use super::state::ViewState;
 use super::watch::Watcher;
 use super::window::WindowRenderer;
-use super::{MethodSettings, Options};
+use super::{LoadRequest, MethodSettings, Options};
 use glam::DVec2;
-use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -47,9 +47,11 @@ pub fn run(options: Options, load: Load, method_settings: MethodSettings) -> Res
     // A closed window takes no events.
     let sink = move |event| drop(proxy.send_event(event));
     let mut loader = Loader::new(load, Arc::new(sink), options.events);
+    let first = LoadRequest { inputs: options.inputs.clone(), filter: options.filter.clone() };
+    let first = Some(first).filter(|first| !first.inputs.is_empty());
     // Loading starts before the window opens.
-    if !options.inputs.is_empty() {
-        loader.start(options.inputs.clone(), false);
+    if let Some(first) = first.clone() {
+        loader.start(first, false);
     }
     let watcher = options.watch.then(|| Watcher::new(events.create_proxy()));
     watcher.iter().for_each(|watcher| watcher.watch(&options.inputs));
@@ -64,9 +66,9 @@ pub fn run(options: Options, load: Load, method_settings: MethodSettings) -> Res
         is_first: true,
         screenshots: Screenshots::new(options.save_folder.clone()),
         proxy: events.create_proxy(),
-        inputs: Vec::new(),
-        failed_inputs: None,
-        loading: Some(options.inputs.clone()).filter(|inputs| !inputs.is_empty()),
+        shown: LoadRequest::default(),
+        failed: None,
+        loading: first,
         options,
         renderer: None,
         device: None,
@@ -103,12 +105,12 @@ struct App {
     options: Options,
     renderer: Option<WindowRenderer>,
     device: Option<Arc<Device>>,
-    /// The inputs of the scene that is shown.
-    inputs: Vec<OsString>,
-    /// The inputs that are being loaded.
-    loading: Option<Vec<OsString>>,
-    /// The inputs that could not be loaded last.
-    failed_inputs: Option<Vec<OsString>>,
+    /// What is shown.
+    shown: LoadRequest,
+    /// What is being loaded.
+    loading: Option<LoadRequest>,
+    /// What could not be loaded last.
+    failed: Option<LoadRequest>,
     retry: Retry,
     /// The last version of the surfels, and when its levels of detail are due.
     levels_due: (u64, Option<Instant>),
@@ -207,8 +209,9 @@ impl App {
             LoadEvent::Ready(scene, method, source) => {
                 self.options.events.emit(&Event::Ready { surfels: scene.point_count() });
                 (self.ui_state.loading, self.ui_state.error) = (None, None);
-                self.inputs = self.loading.take().unwrap_or(std::mem::take(&mut self.inputs));
-                self.failed_inputs = None;
+                self.shown = self.loading.take().unwrap_or(std::mem::take(&mut self.shown));
+                self.failed = None;
+                self.reset_filter();
                 let origin = SceneOrigin { load, preview: false, reload: self.loader.is_reload() };
                 self.set_scene(scene, (method, *source), origin)?;
             }
@@ -222,7 +225,11 @@ impl App {
             LoadEvent::Failed(error) if error.is_device_lost() => return Err(error),
             LoadEvent::Failed(error) => {
                 (self.ui_state.loading, self.next_pose) = (None, None);
-                self.failed_inputs = self.loading.take();
+                // The scene before stays, and with it its filter.
+                let loading = self.loading.take();
+                self.failed =
+                    loading.filter(|loading| !self.loader.is_reload() || loading.filter == self.shown.filter);
+                self.reset_filter();
                 self.state.leave_preview();
                 self.show_error(&error);
             }
@@ -232,18 +239,18 @@ impl App {
     }
 
     /// Loads these inputs as the next scene.
-    fn open(&mut self, inputs: Vec<OsString>) {
-        (self.loading, self.failed_inputs) = (Some(inputs.clone()), None);
+    fn open(&mut self, request: LoadRequest) {
+        (self.loading, self.failed) = (Some(request.clone()), None);
+        self.state.filter = request.filter.clone();
         self.ui_state.loading = Some(LOADING);
-        self.watcher.iter().for_each(|watcher| watcher.watch(&inputs));
-        self.loader.start(inputs, false);
+        self.watcher.iter().for_each(|watcher| watcher.watch(&request.inputs));
+        self.loader.start(request, false);
     }
 
     /// Loads again what has changed: the inputs that are being loaded, those that could not be, or those of the scene, which keeps its camera.
     fn reload(&mut self) {
-        let changed =
-            self.loading.take().or(self.failed_inputs.take()).unwrap_or_else(|| self.inputs.clone());
-        if changed != self.inputs || !self.state.is_whole() {
+        let changed = self.loading.take().or(self.failed.take()).unwrap_or_else(|| self.shown.clone());
+        if changed.inputs != self.shown.inputs || !self.state.is_whole() {
             return self.open(changed);
         }
         self.loading = Some(changed.clone());
@@ -270,6 +277,7 @@ impl App {
             self.cancel();
         }
         self.take_dialog_result();
+        self.apply_filter();
     }
 
     /// Rebuilds the levels of detail once changed surfels have settled; returns when to check again.
@@ -303,8 +311,9 @@ impl App {
             return;
         }
         self.loader.cancel();
-        (self.loading, self.failed_inputs, self.next_pose) = (None, None, None);
-        self.watcher.iter().for_each(|watcher| watcher.watch(&self.inputs));
+        (self.loading, self.failed, self.next_pose) = (None, None, None);
+        self.reset_filter();
+        self.watcher.iter().for_each(|watcher| watcher.watch(&self.shown.inputs));
         self.options.events.emit(&Event::Cancelled);
         self.state.leave_preview();
         self.changed();

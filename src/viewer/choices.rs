@@ -4,6 +4,7 @@ use super::MethodSettings;
 use super::scene_view::with_picture_of;
 use super::source::Source;
 use std::sync::Arc;
+use surfel::formats::Filter;
 use surfel::geometry::Camera;
 use surfel::settings::methods::Method;
 use surfel::{RasterizerChoice, Result, Scene, Settings};
@@ -13,6 +14,8 @@ pub struct Choices<'a> {
     pub method: &'a mut Method,
     pub settings: &'a mut Settings,
     pub source: &'a mut Source,
+    /// Which points of the files are read; a change loads them again.
+    pub filter: &'a mut Filter,
     pub parallel: &'a mut bool,
     pub surfels: u64,
     /// Whether the scene has lines or triangles.

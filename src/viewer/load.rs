@@ -1,10 +1,9 @@
 //! Background loading: a preview of many points first, then the whole scene with its levels of detail.
 
-use super::Loaded;
 use super::events::{Event, Events};
 use super::levels;
 use super::source::Source;
-use std::ffi::OsString;
+use super::{LoadRequest, Loaded};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::thread::{self, JoinHandle};
@@ -17,7 +16,7 @@ use surfel::{Error, Progress, Result, Scene};
 pub type EventSink = Arc<dyn Fn(AppEvent) + Send + Sync>;
 
 /// Loads inputs as one scene. Reports its progress to the listener, and a preview where loading takes long.
-pub type Load = Arc<dyn Fn(&[OsString], &dyn LoadListener) -> Result<Loaded> + Send + Sync>;
+pub type Load = Arc<dyn Fn(&LoadRequest, &dyn LoadListener) -> Result<Loaded> + Send + Sync>;
 
 /// Receives the progress and the preview of a load.
 pub trait LoadListener: Progress {
@@ -88,13 +87,13 @@ impl Loader {
         self.device = Arc::default();
     }
 
-    /// Loads `inputs` as one scene and cancels the load before. With `reload` they are the inputs of the scene that is shown, which stays until
-    /// its new state is loaded.
-    pub fn start(&mut self, inputs: Vec<OsString>, reload: bool) {
+    /// Loads a scene and cancels the load before. With `reload` its inputs are those of the scene that is shown, which stays until its new state
+    /// is loaded.
+    pub fn start(&mut self, request: LoadRequest, reload: bool) {
         self.reload = reload;
         let load = self.load.clone();
         self.spawn(move |worker| {
-            if let Err(error) = worker.load(&load, &inputs) {
+            if let Err(error) = worker.load(&load, &request) {
                 worker.send(LoadEvent::Failed(error));
             }
         });
@@ -177,8 +176,8 @@ struct Worker {
 }
 
 impl Worker {
-    fn load(&self, load: &Load, inputs: &[OsString]) -> Result<()> {
-        let loaded = load(inputs, self)?;
+    fn load(&self, load: &Load, request: &LoadRequest) -> Result<()> {
+        let loaded = load(request, self)?;
         self.events.emit(&Event::Loaded { surfels: loaded.model.surfels.len() as u64 });
         let Some(device) = self.device() else { return Ok(()) };
         let method = loaded.method;
@@ -256,11 +255,15 @@ mod tests {
 
     /// A loader, and its events.
     fn loader(
-        load: impl Fn(&[OsString], &dyn LoadListener) -> Result<Loaded> + Send + Sync + 'static,
+        load: impl Fn(&LoadRequest, &dyn LoadListener) -> Result<Loaded> + Send + Sync + 'static,
     ) -> (Loader, Receiver<AppEvent>) {
         let (send, events) = channel();
         let sink = Arc::new(move |event| drop(send.send(event)));
         (Loader::new(Arc::new(load), sink, Events::new(Instant::now(), false)), events)
+    }
+
+    fn named(input: &str) -> LoadRequest {
+        LoadRequest { inputs: vec![input.into()], ..Default::default() }
     }
 
     fn loaded(points: u32) -> Result<Loaded> {
@@ -289,7 +292,7 @@ mod tests {
             listener.preview(loaded(100)?);
             loaded(30_000)
         });
-        loader.start(Vec::new(), false);
+        loader.start(LoadRequest::default(), false);
         loader.use_device(&device);
         let all = until_ready(&loader, &events);
         let [LoadEvent::Preview(preview, ..), LoadEvent::Ready(whole, ..)] = &all[..] else {
@@ -315,7 +318,7 @@ mod tests {
             Ok(loaded)
         });
         loader.use_device(&device);
-        loader.start(Vec::new(), false);
+        loader.start(LoadRequest::default(), false);
         let all = until_ready(&loader, &events);
         let [LoadEvent::Ready(levels, ..)] = &all[..] else { panic!("{} events", all.len()) };
         let starts = levels.level_table().unwrap().starts();
@@ -327,8 +330,8 @@ mod tests {
         let Some(device) = device("a_cancelled_load_is_not_shown_and_another_replaces_it") else {
             return;
         };
-        let (mut loader, events) = loader(|inputs, listener| {
-            if inputs[0] != "slow" {
+        let (mut loader, events) = loader(|request, listener| {
+            if request.inputs[0] != "slow" {
                 return loaded(1000);
             }
             while !listener.is_cancelled() {
@@ -337,7 +340,7 @@ mod tests {
             Err(Error::Cancelled)
         });
         loader.use_device(&device);
-        loader.start(vec!["slow".into()], false);
+        loader.start(named("slow"), false);
         assert!(loader.cancel() && !loader.cancel(), "one load is running");
         loader.threads.pop().unwrap().thread.join().unwrap();
         assert!(
@@ -345,8 +348,8 @@ mod tests {
                 .try_iter()
                 .all(|event| matches!(event, AppEvent::Load(load, _) if !loader.is_present(load)))
         );
-        loader.start(vec!["slow".into()], false);
-        loader.start(vec!["fast".into()], false);
+        loader.start(named("slow"), false);
+        loader.start(named("fast"), false);
         let all = until_ready(&loader, &events);
         assert!(matches!(&all[..], [LoadEvent::Ready(scene, ..)] if scene.point_count() == 1000));
     }
@@ -354,7 +357,7 @@ mod tests {
     #[test]
     fn dropping_the_loader_does_not_wait_for_a_device() {
         let (mut loader, _events) = loader(|_, _| loaded(1000));
-        loader.start(Vec::new(), false);
+        loader.start(LoadRequest::default(), false);
         drop(loader);
     }
 
@@ -371,7 +374,7 @@ mod tests {
         let device = Device::open(&options).unwrap();
         let (mut loader, events) = loader(|_, _| loaded(1000));
         loader.use_device(&device);
-        loader.start(Vec::new(), false);
+        loader.start(LoadRequest::default(), false);
         let all = until_ready(&loader, &events);
         let [LoadEvent::Failed(error @ Error::Memory { bytes: 40_000, .. })] = &all[..] else {
             panic!("the scene is loaded")

@@ -49,6 +49,7 @@ pub use screenshots::SaveFolder;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::Arc;
+use surfel::formats::Filter;
 use surfel::frame::faster::FasterRasterizers;
 use surfel::geometry::{ColourMap, Extent, Model, Pose, SurfelFormat, ValueRange};
 use surfel::settings::Shading;
@@ -60,6 +61,8 @@ use surfel::{Progress, Rasterizer, RasterizerChoice, Result, Settings};
 pub struct Options {
     /// Files and built-in scenes to load first; may be empty.
     pub inputs: Vec<OsString>,
+    /// Which points of files are read, until the panel changes it for a scene.
+    pub filter: Filter,
     /// Width and height of the window, px.
     pub size: [u32; 2],
     /// Which device renders and presents.
@@ -91,6 +94,15 @@ impl Options {
     fn rasterizer_on(&self, device: &Device) -> RasterizerChoice {
         self.faster.choice(self.rasterizer, device.description())
     }
+}
+
+/// What is loaded as one scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LoadRequest {
+    /// Files and built-in scenes.
+    pub inputs: Vec<OsString>,
+    /// Which points of the files are read.
+    pub filter: Filter,
 }
 
 /// A scene that was loaded, and how it is first shown.

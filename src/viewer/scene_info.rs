@@ -1,6 +1,7 @@
 //! Information about a scene, as text.
 
 use std::path::Path;
+use surfel::formats::FilterCounts;
 
 /// Information about a scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -13,6 +14,8 @@ pub struct SceneInfo {
     pub dropped: u64,
     /// Description of what was estimated, if anything was.
     pub estimated: Option<String>,
+    /// Numbers of points by class and return, filtered or not.
+    pub counts: FilterCounts,
 }
 
 impl SceneInfo {

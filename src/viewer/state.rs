@@ -12,6 +12,7 @@ use super::viewport::Viewport;
 use super::{MethodSettings, Options, appearance::SavedAppearance};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
+use surfel::formats::Filter;
 use surfel::geometry::{Camera, ColourScale, Extent, MostDrawn, Pose};
 use surfel::settings::methods::Method;
 use surfel::settings::{Choice, Shading};
@@ -39,6 +40,8 @@ pub struct ViewState {
     pub dialog_result: Option<DialogResult>,
     /// Whether the user cancels loading.
     pub cancel: bool,
+    /// Which points of the scene's files the user wants.
+    pub filter: Filter,
 }
 
 /// A scene or a level of detail, its camera and its settings.
@@ -65,6 +68,7 @@ impl ViewState {
             dialog: None,
             dialog_result: None,
             cancel: false,
+            filter: options.filter.clone(),
         }
     }
 
@@ -276,13 +280,14 @@ impl ViewState {
     /// What the panels let the user choose, if a scene is shown.
     pub fn choices(&mut self) -> Option<Choices<'_>> {
         let camera = self.frame(Quality::FULL).map(|frame| frame.map(|(_, camera, _)| camera));
-        let Self { view, viewport, method_settings, rasterizer, .. } = self;
+        let Self { view, viewport, method_settings, rasterizer, filter, .. } = self;
         let SceneView { method, settings, scene, source, .. } = view.as_mut()?;
         let streams = scene.streams();
         Some(Choices {
             method,
             settings,
             source,
+            filter,
             surfels: scene.point_count(),
             primitives: streams.primitives.any(),
             weighted: streams.weights.is_some(),
@@ -342,6 +347,7 @@ mod tests {
     fn state() -> ViewState {
         let options = Options {
             inputs: Vec::new(),
+            filter: Filter::default(),
             size: [640, 480],
             device: DeviceOptions::default(),
             rasterizer: None,

@@ -4,6 +4,7 @@
 mod comparison;
 mod display;
 mod faults;
+mod filters;
 mod keys;
 mod load;
 #[allow(dead_code, reason = "other tests use the rest")]

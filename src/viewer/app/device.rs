@@ -30,7 +30,7 @@ impl App {
         self.options.events.emit(&Event::Lost);
         log::warn!("the device was lost: another one is opened");
         let window = renderer.window.clone();
-        let same = self.loading.as_ref().is_none_or(|loading| *loading == self.inputs);
+        let same = self.loading.as_ref().is_none_or(|loading| loading.inputs == self.shown.inputs);
         self.next_pose = self.state.leave_device(same).or(self.next_pose);
         drop(renderer);
         self.device = None;
@@ -39,9 +39,9 @@ impl App {
         self.loader.use_device(&device);
         (self.renderer, self.device) = (Some(renderer), Some(device));
         self.ui_state.message = Some("The device was lost; another one is in use.".into());
-        let inputs = self.loading.take().unwrap_or_else(|| self.inputs.clone());
-        if !inputs.is_empty() {
-            self.open(inputs);
+        let request = self.loading.take().unwrap_or_else(|| self.shown.clone());
+        if !request.inputs.is_empty() {
+            self.open(request);
         }
         self.changed();
         Ok(())

@@ -1,6 +1,7 @@
 //! Files: scenes and cameras that are opened, screenshots and cameras that are saved.
 
 use super::App;
+use crate::viewer::LoadRequest;
 use crate::viewer::events::Event;
 use crate::viewer::keys::Action;
 use crate::viewer::load::AppEvent;
@@ -60,7 +61,8 @@ impl App {
             }
         }
         if !scenes.is_empty() {
-            self.open(scenes.into_iter().map(Into::into).collect());
+            let inputs = scenes.into_iter().map(Into::into).collect();
+            self.open(LoadRequest { inputs, filter: self.options.filter.clone() });
         }
     }
 

@@ -3,9 +3,10 @@
 mod axes;
 mod buffers;
 mod error;
+mod filter;
 mod help;
-mod kernel;
 mod histogram;
+mod kernel;
 mod legend;
 mod method;
 mod raster;
@@ -117,6 +118,11 @@ fn show_choices(ui: &mut Ui, state: &mut ViewState, ui_state: &mut UiState, devi
     ui.set_max_width(ui.available_width() - 10.0);
     ui.spacing_mut().slider_width = (ui.available_width() - SLIDER).clamp(40.0, 100.0);
     scene_info(ui, choices);
+    filter::show(ui, choices);
+    if let Some(estimated) = &choices.source.info().estimated {
+        // Below the filter, which would move with every change of this text.
+        ui.label(format!("Estimated: {estimated}"));
+    }
     CollapsingHeader::new("Method").default_open(true).show(ui, |ui| method::show(ui, choices));
     CollapsingHeader::new("Render settings")
         .default_open(true)
@@ -133,7 +139,7 @@ fn show_choices(ui: &mut Ui, state: &mut ViewState, ui_state: &mut UiState, devi
     ui.collapsing("Buffers", |ui| ui_state.buffers.show(ui, choices, device));
 }
 
-/// Shows names, number of points, and what is estimated.
+/// Shows names and number of points.
 fn scene_info(ui: &mut Ui, choices: &Choices<'_>) {
     let info = choices.source.info();
     for name in info.names.iter().take(LISTED) {
@@ -148,7 +154,4 @@ fn scene_info(ui: &mut Ui, choices: &Choices<'_>) {
         (points, dropped) => format!("{} points, {} left out", thousands(points), thousands(dropped)),
     };
     ui.label(counted);
-    if let Some(estimated) = &info.estimated {
-        ui.label(format!("Estimated: {estimated}"));
-    }
 }
