@@ -1,14 +1,14 @@
 //! `surfel render`.
 
-use super::args::{PassTimes, Render};
+use super::args::{ColorBar, PassTimes, Render};
 use super::cut::{self, Cut};
 use super::report::{Gpu, HalfError, Report};
 use super::{camera, files, progress, reference, summary, turntable, vulkan};
 use std::path::Path;
 use surfel::embed::Measured;
 use surfel::estimate::Estimate;
-use surfel::formats::colour_bar::ColourBar;
-use surfel::formats::image::{Encoded, Output, write};
+use surfel::formats::colour_bar::{ColourBar, write_with};
+use surfel::formats::image::Output;
 use surfel::frame::times::Times;
 use surfel::geometry::{Camera, Extent, Levels, Model, Parts, SurfelFormat};
 use surfel::load::{Coloured, Colouring, LoadOptions, SuggestedShading, Uncoloured, load};
@@ -137,8 +137,8 @@ pub fn run(args: &Render) -> Result<()> {
     if !out.is_png() {
         keep_layers(&mut outcome.picture, task.layers);
     }
-    let bar = loaded.coloured.as_ref().filter(|_| args.color_bar).and_then(Coloured::bar);
-    save(&outcome.picture, task.settings.shading, bar.as_ref(), &out)?;
+    let bar = colour_bar(args, loaded.coloured.as_ref(), task.settings.shading, &out)?;
+    write_with(&outcome.picture, task.settings.shading, bar.as_ref(), &out)?;
     if let Some((count, pattern)) = args.turntable.zip(turntable::pattern(args)?) {
         let cameras = turntable::cameras(&camera, middle, up, count);
         let others = &cameras[1..];
@@ -147,7 +147,7 @@ pub fn run(args: &Render) -> Result<()> {
                 keep_layers(&mut picture, task.layers);
             }
             let out = Output::parse(&pattern.file(number as u32 + 1));
-            save(&picture, task.settings.shading, bar.as_ref(), &out)
+            write_with(&picture, task.settings.shading, bar.as_ref(), &out)
         };
         if args.backend.reference {
             reference::turn(&task, others, save)?;
@@ -177,12 +177,23 @@ pub fn method(asked: Option<Method>, model: &Model) -> Result<Method> {
     }
 }
 
-/// Writes the picture, with the colour bar if there is one.
-fn save(picture: &Picture, shading: Shading, bar: Option<&ColourBar>, out: &Output) -> Result<()> {
-    let Some(bar) = bar else { return write(picture, shading, out) };
-    let mut encoded = Encoded::of(picture, shading)?;
-    bar.draw(&mut encoded)?;
-    encoded.write_png(out)
+/// The colour bar of the picture, if it gets one.
+fn colour_bar(
+    args: &Render,
+    coloured: Option<&Coloured>,
+    shading: Shading,
+    out: &Output,
+) -> Result<Option<ColourBar>> {
+    let bar = coloured.filter(|_| shading.is_coloured()).and_then(Coloured::bar);
+    match args.color_bar {
+        ColorBar::Off => Ok(None),
+        ColorBar::Auto => Ok(bar.filter(|_| out.is_png() && ColourBar::check(args.size).is_ok())),
+        ColorBar::On if coloured.is_none() => Err(Error::Usage(
+            "--color-bar has no values to show, since the points have colours of their own: add --color-by"
+                .into(),
+        )),
+        ColorBar::On => Ok(bar),
+    }
 }
 
 /// Drops the images of a picture that are not among `layers`.
@@ -194,16 +205,18 @@ pub fn keep_layers(picture: &mut Picture, layers: Outputs) {
 
 /// Fails if the shading does not show the colours, or if the colour bar cannot be drawn or has no values.
 fn check_colours(args: &Render, colouring: Option<&Colouring>, out: &Output) -> Result<()> {
-    let Some(colouring) = colouring else { return Ok(()) };
     let refuse = |text: &str| Err(Error::Usage(text.into()));
-    if args.render_settings.shading.is_some_and(|shading| !shading.is_coloured()) {
+    let is_visible = args.render_settings.shading.is_none_or(Shading::is_coloured);
+    if !is_visible && colouring.is_some() {
         return refuse("--color-by is visible with --shading lit or color only: choose one of them");
     }
-    if !args.color_bar {
+    if args.color_bar != ColorBar::On {
         Ok(())
+    } else if !is_visible {
+        refuse("--color-bar belongs to --shading lit, color and edl: choose one of them, or leave it out")
     } else if !out.is_png() {
         refuse("--color-bar is drawn into a PNG alone: name the picture .png")
-    } else if !colouring.has_values() {
+    } else if colouring.is_some_and(|colouring| !colouring.has_values()) {
         refuse("--color-bar has no values for normals: leave it out")
     } else {
         ColourBar::check(args.size)

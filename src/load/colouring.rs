@@ -165,12 +165,21 @@ impl Colouring {
 impl Coloured {
     /// The colour bar; `None` without values.
     pub fn bar(&self) -> Option<ColourBar> {
-        Some(ColourBar { scale: self.scale?, name: self.name.clone() })
+        Some(ColourBar { scale: self.scale?, name: label(&self.name) })
     }
 
     /// The scale, or one that is grey everywhere.
     fn scale_or_grey(&self, map: ColourMap) -> ColourScale {
         self.scale.unwrap_or(ColourScale { map, range: ValueRange { min: 0.0, max: 0.0 } })
+    }
+}
+
+/// Name of a property or quantity for a legend, with its unit where the file formats fix that.
+pub fn label(name: &str) -> String {
+    match name {
+        "gps_time" => format!("{name}, s"),
+        "scan_angle" => format!("{name}, degrees"),
+        _ => name.into(),
     }
 }
 
@@ -195,7 +204,13 @@ fn short(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::short;
+    use super::{label, short};
+
+    #[test]
+    fn labels_have_units_where_the_formats_fix_them() {
+        let labels = ["gps_time", "scan_angle", "intensity"].map(label);
+        assert_eq!(labels, ["gps_time, s", "scan_angle, degrees", "intensity"]);
+    }
 
     #[test]
     fn numbers_are_printed_without_noise() {

@@ -8,7 +8,7 @@ mod shading;
 mod suggestion;
 mod warnings;
 
-pub use colouring::{Coloured, Colouring};
+pub use colouring::{Coloured, Colouring, label};
 pub use shading::SuggestedShading;
 pub use suggestion::{Suggestion, Uncoloured};
 

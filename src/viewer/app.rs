@@ -41,8 +41,10 @@ pub fn run(options: Options, load: Load, method_settings: MethodSettings) -> Res
     let saved = options.settings_file.as_deref().and_then(SavedSettings::read);
     let mut ui_state = UiState::new(saved.as_ref().is_some_and(|saved| saved.panel_hidden));
     ui_state.loading = (!options.inputs.is_empty()).then_some(LOADING);
+    let legend = saved.as_ref().is_none_or(|saved| saved.legend);
     let saved = saved.filter(|_| !options.method_chosen).and_then(|saved| saved.settings());
-    let state = ViewState::new(&options, method_settings, saved);
+    let mut state = ViewState::new(&options, method_settings, saved);
+    state.legend = legend;
     let proxy = events.create_proxy();
     // A closed window takes no events.
     let sink = move |event| drop(proxy.send_event(event));

@@ -17,6 +17,8 @@ pub struct Choices<'a> {
     /// Which points of the files are read; a change loads them again.
     pub filter: &'a mut Filter,
     pub parallel: &'a mut bool,
+    /// Whether a legend tells what the picture's colours mean.
+    pub legend: &'a mut bool,
     pub surfels: u64,
     /// Whether the scene has lines or triangles.
     pub primitives: bool,

@@ -47,6 +47,9 @@ pub struct SavedSettings {
     /// Whether the panel is hidden.
     #[serde(rename = "hidden")]
     pub panel_hidden: bool,
+    /// Whether there is a legend.
+    #[serde(default = "shown")]
+    pub legend: bool,
 }
 
 impl SavedSettings {
@@ -73,10 +76,10 @@ impl SavedSettings {
     /// The settings of the view, for any scene; `None` if no scene is shown.
     pub fn of(state: &ViewState, ui_state: &UiState) -> Option<Self> {
         let ([method, _], settings) = state.names().zip(state.settings_to_save())?;
-        Some(Self::of_settings(method, &settings, ui_state.panel_hidden))
+        Some(Self::of_settings(method, &settings, [ui_state.panel_hidden, state.legend]))
     }
 
-    fn of_settings(method: &str, settings: &Settings, panel_hidden: bool) -> Self {
+    fn of_settings(method: &str, settings: &Settings, [panel_hidden, legend]: [bool; 2]) -> Self {
         let Splatting { footprint, kernel, filter, visibility, normalization, shade } = settings.splatting;
         let storage = settings.pull_push.map(|pull_push| pull_push.storage);
         Self {
@@ -105,6 +108,7 @@ impl SavedSettings {
             ao: settings.ao,
             background: settings.background,
             panel_hidden,
+            legend,
         }
     }
 
@@ -162,6 +166,11 @@ fn nearest() -> String {
     Edges::Nearest.name().into()
 }
 
+/// The legend of files that do not say whether there is one.
+fn shown() -> bool {
+    true
+}
+
 /// Strength of eye-dome lighting of files that do not contain it.
 fn default_edl() -> f32 {
     Settings::DEFAULT_EDL
@@ -203,10 +212,11 @@ mod tests {
         };
         let presets = Method::CHOICES.map(|method| (method.name, method.settings()));
         for (name, settings) in presets.into_iter().chain([("sprites", changed)]) {
-            SavedSettings::of_settings(name, &settings, true).write(&path).unwrap();
+            SavedSettings::of_settings(name, &settings, [true, false]).write(&path).unwrap();
             let read = SavedSettings::read(&path).unwrap();
             let (method, found) = read.settings().unwrap();
-            assert_eq!((method.name, found, read.panel_hidden), (name, settings, true));
+            assert_eq!((method.name, found), (name, settings));
+            assert_eq!([read.panel_hidden, read.legend], [true, false]);
         }
     }
 
@@ -215,7 +225,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("viewer.json");
         assert_eq!(SavedSettings::read(&path), None);
-        let good = SavedSettings::of_settings("sprites", &Method::ALL[2].settings(), false);
+        let good = SavedSettings::of_settings("sprites", &Method::ALL[2].settings(), [false, true]);
         let wrong = [
             SavedSettings { method: "none such".into(), ..good.clone() },
             SavedSettings { cutoff: -1.0, ..good.clone() },

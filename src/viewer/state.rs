@@ -13,7 +13,9 @@ use super::{MethodSettings, Options, appearance::SavedAppearance};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 use surfel::formats::Filter;
-use surfel::geometry::{Camera, ColourScale, Extent, MostDrawn, Pose};
+use surfel::formats::colour_bar::ColourBar;
+use surfel::geometry::{Camera, Extent, MostDrawn, Pose};
+use surfel::load::label;
 use surfel::settings::methods::Method;
 use surfel::settings::{Choice, Shading};
 use surfel::thousands;
@@ -40,6 +42,8 @@ pub struct ViewState {
     pub dialog_result: Option<DialogResult>,
     /// Whether the user cancels loading.
     pub cancel: bool,
+    /// Whether a legend tells what the picture's colours mean.
+    pub legend: bool,
     /// Which points of the scene's files the user wants.
     pub filter: Filter,
 }
@@ -68,6 +72,7 @@ impl ViewState {
             dialog: None,
             dialog_result: None,
             cancel: false,
+            legend: true,
             filter: options.filter.clone(),
         }
     }
@@ -271,16 +276,17 @@ impl ViewState {
         self.view.as_ref().is_some_and(|view| view.source.reading_progress().is_some())
     }
 
-    /// Name and colour scale of the attribute that surfels are coloured by, if it has values.
-    pub fn colour_scale(&self) -> Option<(String, ColourScale)> {
+    /// Colour bar of the attribute that surfels are coloured by, if it has values.
+    pub fn colour_bar(&self) -> Option<ColourBar> {
         let SceneView { source, .. } = self.view.as_ref()?;
-        Some((source.name(source.wanted.attribute).to_owned(), source.wanted.scale()?))
+        let scale = source.wanted.scale()?;
+        Some(ColourBar { name: label(source.name(source.wanted.attribute)), scale })
     }
 
     /// What the panels let the user choose, if a scene is shown.
     pub fn choices(&mut self) -> Option<Choices<'_>> {
         let camera = self.frame(Quality::FULL).map(|frame| frame.map(|(_, camera, _)| camera));
-        let Self { view, viewport, method_settings, rasterizer, filter, .. } = self;
+        let Self { view, viewport, method_settings, rasterizer, filter, legend, .. } = self;
         let SceneView { method, settings, scene, source, .. } = view.as_mut()?;
         let streams = scene.streams();
         Some(Choices {
@@ -295,6 +301,7 @@ impl ViewState {
             camera,
             size: viewport.size,
             parallel: &mut viewport.parallel,
+            legend,
             rasterizer: *rasterizer,
             method_settings,
         })

@@ -103,10 +103,12 @@ fn the_colour_bar_is_at_the_right_edge_and_has_every_colour() {
     let camera = "--reference --eye 0,0,50 --target 0,0,0 --size 256x256";
     for background in ["255,255,255", "0,0,0", "transparent"] {
         let common = format!("render a.ply -o out.png --color-by x --background {background} {camera}");
-        program.run(&common).text();
+        program.run(&format!("{common} --color-bar=off")).text();
         let plain = program.png("out.png");
-        program.run(&format!("{common} --color-bar")).text();
+        program.run(&common).text();
         let bar = program.png("out.png");
+        program.run(&format!("{common} --color-bar")).text();
+        assert!(program.png("out.png") == bar, "it is the default");
         let left = plain.enumerate_pixels().filter(|(x, ..)| *x < 128);
         assert!(left.clone().all(|(x, y, pixel)| bar.get_pixel(x, y) == pixel), "{background}");
         for colour in [[72, 40, 120], [32, 144, 140], [109, 205, 89]] {
@@ -119,9 +121,37 @@ fn the_colour_bar_is_at_the_right_edge_and_has_every_colour() {
 }
 
 #[test]
+fn pictures_have_a_colour_bar_where_colours_stand_for_values() {
+    let program = Program::new();
+    program.write(
+        "bare.xyz",
+        (0..400).fold(String::new(), |text, i| text + &format!("{} {} 0 {}\n", i % 20, i / 20, i % 20)),
+    );
+    program.write("own.ply", surfels(&["-1 0 0 0 0 1 0.4", "1 0 0 0 0 1 0.4"]));
+    let has_bar = |arguments: &str| {
+        let picture = |bar: &str| {
+            let common = "--reference -o out.png --quiet";
+            program.run(&format!("render {arguments} --color-bar={bar} {common}")).text();
+            program.png("out.png")
+        };
+        picture("auto") != picture("off")
+    };
+    // Coloured by intensity, since the points have no colours of their own.
+    assert!(has_bar("bare.xyz --size 160x128"));
+    assert!(!has_bar("bare.xyz --size 159x128"), "it has no room");
+    assert!(!has_bar("bare.xyz --size 160x128 --shading normal"), "its colours are other values");
+    assert!(!has_bar("bare.xyz --size 160x128 --color-by normal"), "directions have no values");
+    assert!(!has_bar("bare.xyz --size 160x128 --color-by file") && !has_bar("own.ply --size 160x128"));
+    let run = program.run("render own.ply -o new.png --color-bar --reference --size 160x128");
+    assert!(run.error(2).contains("add --color-by"), "{}", run.err);
+    program.run("render bare.xyz -o out.exr --reference --size 160x128").text();
+}
+
+#[test]
 fn invalid_colours_are_refused_first() {
     let cases = [
-        ("--color-bar", "--color-by"),
+        ("--color-bar --shading normal", "--shading lit, color and edl"),
+        ("--color-bar --size 100x1000", "160x128"),
         ("--color-map turbo", "--color-by"),
         ("--color-by x --color-map rainbow", "possible values: viridis, cividis"),
         ("--color-by x:1", "missing.ply"),

@@ -150,9 +150,18 @@ pub struct Render {
     /// What points are coloured by
     #[command(flatten, next_help_heading = "Colours")]
     pub colours: Colours,
-    /// Draws a bar with the colours of --color-by and their values into the PNG
-    #[arg(long, alias = "colour-bar", requires = "color_by")]
-    pub color_bar: bool,
+    /// Draws a bar with the colours and their values into the PNG, where colours stand for values
+    #[arg(
+        long,
+        alias = "colour-bar",
+        value_enum,
+        value_name = "WHEN",
+        num_args = 0..=1,
+        require_equals = true,
+        default_value = "auto",
+        default_missing_value = "on"
+    )]
+    pub color_bar: ColorBar,
     /// Additional layers of an EXR file
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LAYER,…")]
     pub layers: Vec<Layer>,
@@ -177,6 +186,17 @@ pub struct Render {
     /// Prints nothing but warnings and errors
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+/// When a colour bar is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum ColorBar {
+    /// Where colours stand for values, in a PNG that has room for it
+    Auto,
+    /// Always: without values, or room for it, the picture is an error
+    On,
+    /// Never
+    Off,
 }
 
 /// Which passes are timed.

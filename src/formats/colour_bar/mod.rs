@@ -3,9 +3,11 @@
 mod canvas;
 mod ticks;
 
-use super::image::Encoded;
+use super::image::{Encoded, Output, write};
 use crate::error::{Error, Result};
 use crate::geometry::ColourScale;
+use crate::picture::Picture;
+use crate::settings::Shading;
 use canvas::{Font, Rectangle};
 use ticks::{Tick, ticks};
 
@@ -30,6 +32,17 @@ const LIGHT: Theme = Theme { panel: [255; 3], ink: [16; 3], opacity: 0.65 };
 const DARK: Theme = Theme { panel: [16; 3], ink: [240; 3], opacity: 0.8 };
 /// Opacity of the panel's edge.
 const EDGE: f64 = 0.4;
+
+/// Writes a picture as [`write`] does; as PNG with a colour bar, if one is given.
+///
+/// # Errors
+/// As [`write`] and [`ColourBar::check`].
+pub fn write_with(picture: &Picture, shading: Shading, bar: Option<&ColourBar>, out: &Output) -> Result<()> {
+    let Some(bar) = bar else { return write(picture, shading, out) };
+    let mut encoded = Encoded::of(picture, shading)?;
+    bar.draw(&mut encoded)?;
+    encoded.write_png(out)
+}
 
 /// Colours, sRGB-encoded.
 struct Theme {

@@ -119,7 +119,9 @@ impl App {
                 let (scene, camera, settings) = frame?;
                 let values = kind == ScreenshotKind::Values;
                 let rasterizer = state.rasterizer;
-                Screenshot::render(device, scene, (&camera, &settings), (size, rasterizer), values)?
+                let picture =
+                    Screenshot::render(device, scene, (&camera, &settings), (size, rasterizer), values)?;
+                picture.with_bar(state.colour_bar().filter(|_| state.legend), size)
             }
         };
         let proxy = self.proxy.clone();

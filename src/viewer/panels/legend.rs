@@ -4,6 +4,7 @@ use super::UiState;
 use super::raster::{paint_bar, short};
 use crate::viewer::state::ViewState;
 use egui::{Align2, Color32, FontId, Rect, Ui, pos2, vec2};
+use surfel::formats::colour_bar::ColourBar;
 use surfel::geometry::{ColourMap, ColourScale, ValueRange};
 use surfel::settings::Shading;
 
@@ -32,8 +33,11 @@ enum Colours {
     None,
 }
 
-/// Paints the legend at the lower left of the picture, or of both pictures, in the rectangle `free` of panels.
+/// Paints the legend at the lower left of the picture, or of both pictures, in the rectangle `free` of panels, unless it is hidden.
 pub fn show(ui: &Ui, free: Rect, picture: Rect, state: &ViewState, ui_state: &UiState) {
+    if !state.legend {
+        return;
+    }
     let right = ui_state.split(state).map(|(_, at)| at);
     let bottom = free.bottom().min(picture.bottom());
     let whole = Rect { max: pos2(picture.right(), bottom), ..picture };
@@ -56,7 +60,7 @@ fn legend_of(state: &ViewState, range: Option<(Shading, ValueRange)>) -> Option<
     let from_0 = |range: ValueRange| ValueRange { min: 0.0, max: range.max.max(1.0) };
     let (name, range, colours) = match shading {
         Shading::Lit | Shading::Colour | Shading::Edl => {
-            let (name, ColourScale { map, range }) = state.colour_scale()?;
+            let ColourBar { name, scale: ColourScale { map, range } } = state.colour_bar()?;
             return Some(Legend { name, range: Some(range), colours: Colours::Map(map) });
         }
         Shading::Normal => ("normal: x, y, z from −1 to 1 as red, green, blue", None, Colours::None),

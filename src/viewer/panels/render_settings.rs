@@ -33,6 +33,8 @@ pub fn show(ui: &mut Ui, choices: &mut Choices<'_>) {
     settings.alpha = if smooth { Alpha::Coverage } else { Alpha::Mask };
     choice_combo(ui, "edges", &mut settings.edges, None);
     culling(ui, settings);
+    ui.checkbox(choices.legend, "legend")
+        .on_hover_text("Tells what colours mean: on the picture, and in files that F12 saves.");
     ui.checkbox(choices.parallel, "parallel projection")
         .on_hover_text("Objects at the pivot's distance keep their size.");
 }

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 use std::sync::Arc;
-use surfel::formats::image::{Encoded, Output, write};
+use surfel::formats::colour_bar::{ColourBar, write_with};
+use surfel::formats::image::{Encoded, Output};
 use surfel::geometry::Camera;
 use surfel::settings::Shading;
 use surfel::vk::Device;
@@ -21,7 +22,7 @@ pub enum ScreenshotKind {
 
 /// A picture to be saved.
 pub enum Screenshot {
-    Rendered { picture: Picture, shading: Shading, values: bool },
+    Rendered { picture: Picture, shading: Shading, values: bool, bar: Option<ColourBar> },
     Window(Encoded),
 }
 
@@ -41,7 +42,15 @@ impl Screenshot {
             // The PNG alone needs them, for its mask.
             (picture.normal, picture.depth) = (None, None);
         }
-        Ok(Self::Rendered { picture, shading: settings.shading, values })
+        Ok(Self::Rendered { picture, shading: settings.shading, values, bar: None })
+    }
+
+    /// The screenshot with a colour bar, where `surfel render` draws one.
+    pub fn with_bar(mut self, new: Option<ColourBar>, size: [u32; 2]) -> Self {
+        if let Self::Rendered { shading, values: false, bar, .. } = &mut self {
+            *bar = new.filter(|_| shading.is_coloured() && ColourBar::check(size).is_ok());
+        }
+        self
     }
 
     /// A screenshot of a window of `size` px.
@@ -62,7 +71,7 @@ impl Screenshot {
     pub fn write(self, path: &Path) -> Result<()> {
         let out = Output::File(path.to_owned());
         match self {
-            Self::Rendered { picture, shading, .. } => write(&picture, shading, &out),
+            Self::Rendered { picture, shading, bar, .. } => write_with(&picture, shading, bar.as_ref(), &out),
             Self::Window(encoded) => encoded.write_png(&out),
         }
     }
