@@ -9,6 +9,7 @@
 //!
 //! Source: ASTM E2807-11.
 
+mod packets;
 mod scan;
 mod survey;
 #[cfg(test)]
@@ -21,6 +22,7 @@ use super::quoted::on_one_line;
 use super::reader::{Input, Reader};
 use super::source::{BEGINNING, Parsed, Source, Stream};
 use super::survey::Survey;
+use super::table::points::{MANY_POINTS, SOME_POINTS, origin_of_some};
 use super::table::{Arrays, Layout, Points, fill};
 use super::{Inspected, Loaded, ReadOptions, Report, WantedAttributes, point_table};
 use crate::Progress;
@@ -28,6 +30,7 @@ use crate::error::Cause;
 use crate::geometry::{Cloud, View};
 use e57::{E57Reader, PointCloud};
 use glam::DVec3;
+use packets::{Packets, Scratch};
 use scan::Scan;
 pub(super) use survey::ScanSurvey;
 
@@ -98,33 +101,76 @@ fn load(
     let report_of = element;
     let element = &with_local(element, scans, options);
     let layout = Layout::of(element, options, false)?;
-    let mut arrays = Arrays::new(element.count, &layout)?;
+    let packets: Parsed<Vec<Packets>> = scans.iter().map(|scan| Packets::of(source, scan)).collect();
+    let packets = packets?;
+    let scan = |number: usize| Scan::of(&scans[number], number, &element.properties, &layout);
+    let readers: Vec<Scan> = (0..scans.len()).map(scan).collect();
+    let origin = origin_before(&readers, &packets, element.count, &layout)?;
+    let layout = &origin.map_or(layout.clone(), |origin| layout.clone().relative_to(origin));
+    let mut arrays = Arrays::new(element.count, layout)?;
     let meter = Meter::new(progress, element.count);
-    let sizes = scans.iter().map(|scan| scan.records as usize);
-    let tally = fill(
-        &mut arrays,
-        &layout,
-        sizes,
-        || (),
-        |(), index, rows| {
-            // Each thread has its own reader.
-            let mut file = open(source)?;
-            let points = file.pointcloud_raw(&scans[index]).map_err(cause)?;
-            Scan::of(&scans[index], index, &element.properties, &layout).read(points, rows, &meter)
-        },
-    )?;
+    let pieces = pieces(scans);
+    let sizes = pieces.iter().map(|piece| piece.count);
+    let tally = fill(&mut arrays, layout, sizes, Scratch::default, |scratch, index, rows| {
+        let Piece { scan, first, .. } = pieces[index];
+        readers[scan].read(&packets[scan], first, scratch, rows, &meter)
+    })?;
     meter.finish();
-    let mut points = Points::new(arrays, tally, &layout)?;
-    let attributes = points.take_attributes(element, &layout);
+    let mut points = Points::new(arrays, tally, layout)?;
+    let attributes = points.take_attributes(element, layout);
     let system = file.coordinate_metadata().filter(|text| !text.is_empty()).map(str::to_owned);
     let report = Report {
         details: details(file, scans),
         survey: Survey::of_scans(system, scans.iter().map(ScanSurvey::of).collect()),
         up: Some(DVec3::Z),
-        ..Report::of_points(Encoding::Compressed, report_of, &layout, &points)
+        ..Report::of_points(Encoding::Compressed, report_of, layout, &points)
     };
     let view = view(scans, points.cloud.origin);
     Ok(Loaded { cloud: Cloud { view, ..points.cloud }, report, attributes })
+}
+
+/// Consecutive points of a scan, read by one thread.
+struct Piece {
+    /// Index of the scan.
+    scan: usize,
+    /// Number of the first point in the scan.
+    first: u64,
+    count: usize,
+}
+
+/// Number of points of a piece: the fields of so many fit into the cache.
+const PIECE: usize = 1 << 14;
+
+/// All points in pieces.
+fn pieces(scans: &[PointCloud]) -> Vec<Piece> {
+    let of_scan = |(scan, cloud): (usize, &PointCloud)| {
+        let records = cloud.records;
+        let piece =
+            move |first: u64| Piece { scan, first, count: (records - first).min(PIECE as u64) as usize };
+        (0..records).step_by(PIECE).map(piece)
+    };
+    scans.iter().enumerate().flat_map(of_scan).collect()
+}
+
+/// The origin of many points from some of them, evenly spread; `None` if all points determine it.
+fn origin_before(
+    readers: &[Scan],
+    packets: &[Packets],
+    count: u64,
+    layout: &Layout,
+) -> Parsed<Option<DVec3>> {
+    if layout.narrow || count < MANY_POINTS {
+        return Ok(None);
+    }
+    let mut scratch = Scratch::default();
+    let mut sample = Vec::new();
+    for (reader, packets) in readers.iter().zip(packets) {
+        let some = (u128::from(SOME_POINTS) * u128::from(reader.points())).div_ceil(u128::from(count)) as u64;
+        for index in 0..some {
+            sample.push(reader.position(packets, index * (reader.points() / some), &mut scratch)?);
+        }
+    }
+    Ok(origin_of_some(sample))
 }
 
 /// The points with their coordinates before poses are applied, if all attributes are wanted and there are poses.
@@ -145,7 +191,8 @@ fn cause(error: e57::Error) -> Cause {
 fn refuse_lie(scans: &[PointCloud], size: u64) -> Parsed<()> {
     for cloud in scans {
         let bits: u64 = cloud.prototype.iter().map(|record| scan::bits(&record.data_type)).sum();
-        if u128::from(cloud.records) * u128::from(bits) > 8 * u128::from(size) {
+        // Points whose numbers are all constants have no bits.
+        if u128::from(cloud.records) * u128::from(bits.max(1)) > 8 * u128::from(size) {
             return Err(format!(
                 "a scan claims {} points of {bits} bits, but the file has {size} bytes: it is truncated or wrong; fetch it again",
                 cloud.records

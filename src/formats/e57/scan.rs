@@ -1,14 +1,14 @@
 //! A scan of a file.
 
-use super::cause;
+use super::packets::{Packets, Scratch};
 use crate::formats::declared::{Kind, Property, Scalar};
 use crate::formats::meter::Meter;
 use crate::formats::point_table::LOCAL;
 use crate::formats::source::Parsed;
-use crate::formats::table::{Layout, ROWS, Rows};
-use e57::{PointCloud, RawValues, RecordDataType, RecordName, RecordValue, Transform};
+use crate::formats::table::{Block, Layout, ROWS, Rows};
+use e57::{PointCloud, RecordDataType, RecordName, RecordValue, Transform};
 use glam::{DMat3, DQuat, DVec3};
-use std::io::{Read, Seek};
+use std::ops::Range;
 
 /// Coordinates of the points, by index in the prototype.
 #[derive(Clone, Copy)]
@@ -58,7 +58,12 @@ pub struct Scan<'a> {
     translation: DVec3,
     /// Each filled column with its value.
     used: Vec<(usize, Value)>,
+    /// The fields that these values need, by index in the prototype.
+    fields: Vec<usize>,
 }
+
+/// Numbers of some points, by index of the field in the prototype.
+type Fields = Vec<Vec<f64>>;
 
 /// Property: the number of a point's scan, from 0.
 pub const SCAN: &str = "scan";
@@ -241,86 +246,120 @@ impl<'a> Scan<'a> {
             Coordinates::Spherical(_) => find(cloud, &RecordName::SphericalInvalidState),
             _ => find(cloud, &RecordName::CartesianInvalidState),
         };
-        let used = layout
+        let used: Vec<(usize, Value)> = layout
             .used()
             .into_iter()
             .filter_map(|(column, index)| Some((column, value(cloud, properties.get(index)?))))
             .collect();
-        Self { cloud, number, coordinates, normal, invalid, rotation, translation, used }
+        let positions = match coordinates {
+            Coordinates::Cartesian(indices) | Coordinates::Spherical(indices) => indices.to_vec(),
+            Coordinates::Missing => Vec::new(),
+        };
+        let needed = used.iter().flat_map(|(_, value)| match *value {
+            Value::Field { index, .. } => vec![index],
+            Value::Valid { index, invalid } => vec![index, invalid],
+            Value::Normal(_) => normal.map_or(Vec::new(), |indices| indices.to_vec()),
+            Value::Axis(_) | Value::Local(_) | Value::Scan | Value::Missing => Vec::new(),
+        });
+        let mut fields: Vec<usize> = positions.into_iter().chain(invalid).chain(needed).collect();
+        fields.sort_unstable();
+        fields.dedup();
+        Self { cloud, number, coordinates, normal, invalid, rotation, translation, used, fields }
     }
 
-    /// Reads all points.
-    pub fn read<T: Read + Seek>(
+    /// Number of points.
+    pub fn points(&self) -> u64 {
+        self.cloud.records
+    }
+
+    /// The position of a point; not finite for a point without one.
+    pub fn position(&self, packets: &Packets, point: u64, scratch: &mut Scratch) -> Parsed<DVec3> {
+        let fields = self.read_fields(packets, point, 1, scratch)?;
+        Ok(self.rotation * self.local(&fields, 0) + self.translation)
+    }
+
+    /// Reads the points of the rows that are left, from `first` on.
+    pub fn read(
         &self,
-        mut points: e57::PointCloudReaderRaw<'_, T>,
+        packets: &Packets,
+        first: u64,
+        scratch: &mut Scratch,
         rows: &mut Rows,
         meter: &Meter,
     ) -> Parsed<()> {
-        let width = self.used.len();
-        let mut numbers = vec![0.0; width * ROWS];
-        while rows.left() > 0 {
-            let count = rows.left().min(ROWS);
-            for row in numbers.chunks_exact_mut(width).take(count) {
-                let point = points
-                    .next()
-                    .ok_or("a scan has fewer points than it claims: fetch it again")?
-                    .map_err(cause)?;
-                self.point(&point, row)?;
-            }
-            rows.next(count, |block| {
-                for (index, (column, _)) in self.used.iter().enumerate() {
-                    let values = numbers.chunks_exact(width).map(|row| row[index]);
-                    block.column_mut(*column).iter_mut().zip(values).for_each(|(to, value)| *to = value);
-                }
-            });
-            meter.add(count as u64)?;
+        let count = rows.left();
+        let fields = self.read_fields(packets, first, count, scratch)?;
+        for start in (0..count).step_by(ROWS) {
+            let these = start..count.min(start + ROWS);
+            let size = these.len();
+            rows.next(size, |block| self.fill(&fields, these, block));
+            meter.add(size as u64)?;
         }
         Ok(())
     }
 
-    /// Writes the used values of a point.
-    fn point(&self, point: &RawValues, row: &mut [f64]) -> Parsed<()> {
-        let number =
-            |index: usize| point[index].to_f64(&self.cloud.prototype[index].data_type).map_err(cause);
-        let local = self.local(number)?;
-        let position = self.rotation * local + self.translation;
-        let normal = match self.normal {
-            Some([x, y, z]) => self.rotation * DVec3::new(number(x)?, number(y)?, number(z)?),
-            None => DVec3::NAN,
-        };
-        for (to, (_, value)) in row.iter_mut().zip(&self.used) {
-            *to = match *value {
-                Value::Axis(axis) => position[axis],
-                Value::Local(axis) => local[axis],
-                Value::Normal(axis) => normal[axis],
-                Value::Scan => self.number as f64,
-                Value::Field { index, summand, factor } => (number(index)? + summand) * factor,
-                Value::Valid { index, invalid } => {
-                    if number(invalid)? == 0.0 {
-                        number(index)?
-                    } else {
-                        f64::NAN
-                    }
-                }
-                Value::Missing => f64::NAN,
-            };
+    /// Reads the used fields of some points; by index in the prototype, empty for the others.
+    fn read_fields(
+        &self,
+        packets: &Packets,
+        first: u64,
+        count: usize,
+        scratch: &mut Scratch,
+    ) -> Parsed<Fields> {
+        let mut fields = vec![Vec::new(); self.cloud.prototype.len()];
+        for &index in &self.fields {
+            fields[index] = vec![0.0; count];
+            packets.numbers(index, first, &mut fields[index], scratch)?;
         }
-        Ok(())
+        Ok(fields)
+    }
+
+    /// Writes the used values of some points.
+    fn fill(&self, fields: &Fields, points: Range<usize>, block: &mut Block) {
+        let locals: Vec<DVec3> = points.clone().map(|point| self.local(fields, point)).collect();
+        for (column, value) in &self.used {
+            let to = block.column_mut(*column).iter_mut();
+            match *value {
+                Value::Axis(axis) => {
+                    let position = |local: &DVec3| (self.rotation * *local + self.translation)[axis];
+                    to.zip(locals.iter().map(position)).for_each(|(to, value)| *to = value);
+                }
+                Value::Local(axis) => {
+                    to.zip(&locals).for_each(|(to, local)| *to = local[axis]);
+                }
+                Value::Normal(axis) => {
+                    let normals =
+                        points.clone().map(|point| (self.rotation * self.normal(fields, point))[axis]);
+                    to.zip(normals).for_each(|(to, value)| *to = value);
+                }
+                Value::Scan => to.for_each(|to| *to = self.number as f64),
+                Value::Field { index, summand, factor } => {
+                    let values = &fields[index][points.clone()];
+                    to.zip(values).for_each(|(to, value)| *to = (value + summand) * factor);
+                }
+                Value::Valid { index, invalid } => {
+                    let values = fields[index][points.clone()].iter().zip(&fields[invalid][points.clone()]);
+                    to.zip(values)
+                        .for_each(|(to, (value, flag))| *to = if *flag == 0.0 { *value } else { f64::NAN });
+                }
+                Value::Missing => to.for_each(|to| *to = f64::NAN),
+            }
+        }
+    }
+
+    fn normal(&self, fields: &Fields, point: usize) -> DVec3 {
+        self.normal.map_or(DVec3::NAN, |indices| DVec3::from(indices.map(|index| fields[index][point])))
     }
 
     /// The position in the scan's frame; not finite for a point without one.
-    fn local(&self, number: impl Fn(usize) -> Parsed<f64>) -> Parsed<DVec3> {
-        if let Some(invalid) = self.invalid
-            && number(invalid)? != 0.0
-        {
-            return Ok(DVec3::NAN);
+    fn local(&self, fields: &Fields, point: usize) -> DVec3 {
+        if self.invalid.is_some_and(|invalid| fields[invalid][point] != 0.0) {
+            return DVec3::NAN;
         }
-        let three =
-            |[a, b, c]: [usize; 3]| Ok::<_, crate::error::Cause>([number(a)?, number(b)?, number(c)?]);
-        Ok(match self.coordinates {
-            Coordinates::Cartesian(indices) => DVec3::from(three(indices)?),
+        match self.coordinates {
+            Coordinates::Cartesian(indices) => DVec3::from(indices.map(|index| fields[index][point])),
             Coordinates::Spherical(indices) => {
-                let [range, azimuth, elevation] = three(indices)?;
+                let [range, azimuth, elevation] = indices.map(|index| fields[index][point]);
                 range
                     * DVec3::new(
                         elevation.cos() * azimuth.cos(),
@@ -329,7 +368,7 @@ impl<'a> Scan<'a> {
                     )
             }
             Coordinates::Missing => DVec3::NAN,
-        })
+        }
     }
 }
 

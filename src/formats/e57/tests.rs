@@ -128,6 +128,115 @@ fn positions_in_single_precision_come_back_bit_by_bit() {
 }
 
 #[test]
+fn many_points_are_read_in_pieces_and_get_their_origin_from_some() {
+    let axes = [RecordName::CartesianX, RecordName::CartesianY, RecordName::CartesianZ];
+    let scaled = RecordDataType::ScaledInteger { min: -70_000, max: 70_000, scale: 0.01, offset: 500.0 };
+    let kinds = [
+        RecordDataType::Double { min: None, max: None },
+        scaled,
+        RecordDataType::Single { min: None, max: None },
+    ];
+    let mut fields: Vec<Record> =
+        axes.into_iter().zip(kinds).map(|(name, data_type)| Record { name, data_type }).collect();
+    fields.extend([
+        integer(RecordName::ColorRed, 0, 255),
+        integer(RecordName::ColorGreen, 0, 255),
+        integer(RecordName::ColorBlue, 0, 255),
+        // 5, 64 and no bits.
+        integer(RecordName::ReturnIndex, 0, 30),
+        integer(RecordName::RowIndex, i64::MIN, i64::MAX),
+        integer(RecordName::ReturnCount, 7, 7),
+    ]);
+    let count = 600_000i64;
+    let exact = |i: i64| {
+        DVec3::new(4e6 + 0.001 * i as f64, (i % 140_001 - 70_000) as f64 * 0.01 + 500.0, (i % 977) as f64)
+    };
+    let point = |i: i64| {
+        let at = exact(i);
+        let mut values = vec![
+            RecordValue::Double(at.x),
+            RecordValue::ScaledInteger(i % 140_001 - 70_000),
+            RecordValue::Single(at.z as f32),
+        ];
+        values.extend([i % 256, i / 256 % 256, 9, i % 31, i64::MIN + i * 7, 7].map(RecordValue::Integer));
+        values
+    };
+    let file = written(fields, (0..count).map(point).collect(), None);
+    let wanted = WantedAttributes::Named(["return_number", "number_of_returns"].map(str::to_owned).into());
+    let options = ReadOptions { scalar: Some("row".into()), attributes: wanted, ..Default::default() };
+    let Loaded { cloud, attributes, .. } = read_bytes("a", &file, &options).unwrap();
+    assert_eq!(cloud.len(), count as usize);
+    assert!(cloud.origin.x > 1e6);
+    let Some(Colours::Srgb8(colours)) = &cloud.colours else { panic!() };
+    let scalar = cloud.scalar.as_ref().unwrap();
+    for i in (0..count).step_by(37).chain([16_383, 16_384, count - 1]) {
+        let index = i as usize;
+        let far = (cloud.origin + cloud.positions[index].as_dvec3() - exact(i)).abs().max_element();
+        // Half an ulp of the extent.
+        assert!(far <= 6.2e-5, "{i}: {far}");
+        assert_eq!(colours[index][..3], [i % 256, i / 256 % 256, 9].map(|code| code as u8));
+        assert_eq!(scalar[index], (i64::MIN + i * 7) as f64);
+        let [number, returns] = [0, 1].map(|which: usize| attributes[which].values.get(index));
+        assert_eq!([number, returns], [Some((i % 31 + 1) as f64), Some(7.0)], "{i}");
+    }
+    // The numbers of a point by itself begin at any bit.
+    let source = Source::of(&file);
+    let packets = Packets::of(&source, &open(&source).unwrap().pointclouds()[0]).unwrap();
+    for point in [12_345u64, 299_999, 599_998] {
+        let mut numbers = [0.0; 2];
+        packets.numbers(6, point, &mut numbers, &mut Scratch::default()).unwrap();
+        assert_eq!(numbers, [point % 31, (point + 1) % 31].map(|number| number as f64));
+    }
+}
+
+#[test]
+fn points_without_bits_are_no_more_than_the_file_could_have() {
+    let fields = [RecordName::CartesianX, RecordName::CartesianY, RecordName::CartesianZ].map(double).into();
+    let bytes = written(fields, vec![[0.0; 3].map(RecordValue::Double).into(); 3], None);
+    let source = Source::of(&bytes);
+    let mut scans = open(&source).unwrap().pointclouds();
+    // Their numbers are constants of the description.
+    scans[0]
+        .prototype
+        .iter_mut()
+        .for_each(|field| field.data_type = RecordDataType::Integer { min: 4, max: 4 });
+    refuse_lie(&scans, source.size()).unwrap();
+    let packets = Packets::of(&source, &scans[0]).unwrap();
+    let mut numbers = [0.0; 2];
+    packets.numbers(2, 1, &mut numbers, &mut Scratch::default()).unwrap();
+    assert_eq!(numbers, [4.0; 2]);
+    scans[0].records = 8 * source.size() + 1;
+    assert!(refuse_lie(&scans, source.size()).unwrap_err().to_string().contains("it is truncated or wrong"));
+}
+
+#[test]
+fn fewer_points_than_claimed_and_a_damaged_page_are_errors() {
+    let fields: Vec<Record> =
+        [RecordName::CartesianX, RecordName::CartesianY, RecordName::CartesianZ].map(double).into();
+    let points: Vec<_> = (0..5000).map(|i| [f64::from(i); 3].map(RecordValue::Double).to_vec()).collect();
+    let bytes = written(fields, points, None);
+    let source = Source::of(&bytes);
+    let mut scans = open(&source).unwrap().pointclouds();
+    let packets = Packets::of(&source, &scans[0]).unwrap();
+    let read = |packets: &Packets| {
+        let mut numbers = [0.0; 3];
+        packets.numbers(1, 4000, &mut numbers, &mut Scratch::default()).map(|()| numbers)
+    };
+    assert_eq!(read(&packets).unwrap(), [4000.0, 4001.0, 4002.0]);
+    scans[0].records = 5100;
+    let fewer = Packets::of(&source, &scans[0]).err().unwrap().to_string();
+    assert!(fewer.contains("fetch it again"), "{fewer}");
+    scans[0].records = 5000;
+    for page in 1..bytes.len() / 1024 {
+        let mut damaged = bytes.clone();
+        damaged[1024 * page + 500] ^= 4;
+        let options = ReadOptions::default();
+        let error = read_bytes("a.e57", &damaged, &options).unwrap_err().to_string();
+        assert!(error.contains("checksum"), "{page}: {error}");
+    }
+}
+
+#[test]
 fn damage_is_named() {
     let failure = |bytes: &[u8]| read_bytes("a.e57", bytes, &ReadOptions::default()).unwrap_err().to_string();
     let whole = bytes();

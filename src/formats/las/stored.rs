@@ -3,8 +3,7 @@
 use super::chunks::Chunks;
 use super::header::Header;
 use crate::formats::source::{Parsed, Source};
-use crate::formats::table::convert::is_position;
-use crate::formats::table::points::origin;
+use crate::formats::table::points::{MANY_POINTS, SOME_POINTS, origin_of_some};
 use glam::DVec3;
 
 /// Points in the file.
@@ -14,12 +13,6 @@ pub enum Stored {
     /// Compressed chunks.
     Chunks(Chunks),
 }
-
-/// Number of points from which their origin is computed beforehand, from some of them: they need not be stored in float64 until it is known.
-const MANY: u64 = 500_000;
-
-/// Number of records for the origin.
-const SAMPLE: u64 = 1 << 10;
 
 /// Least number of chunks for the origin.
 const LEAST: usize = 8;
@@ -45,13 +38,13 @@ impl Stored {
 
     /// The origin of many points; `None` for few, whose origin all of them determine.
     pub fn origin(&self, header: &Header, source: &Source) -> Parsed<Option<DVec3>> {
-        if header.count < MANY {
+        if header.count < MANY_POINTS {
             return Ok(None);
         }
         let starts: Vec<u64> = match self {
             Self::Records => {
-                let step = header.count / SAMPLE;
-                (0..SAMPLE).map(|index| header.start + index * step * header.stride as u64).collect()
+                let step = header.count / SOME_POINTS;
+                (0..SOME_POINTS).map(|index| header.start + index * step * header.stride as u64).collect()
             }
             // The first point of a chunk is not compressed.
             Self::Chunks(chunks) => chunks.all.iter().map(|chunk| chunk.start).collect(),
@@ -61,8 +54,7 @@ impl Stored {
         }
         let sample: Parsed<Vec<DVec3>> =
             starts.into_iter().map(|start| position(header, source, start)).collect();
-        let usable: Vec<DVec3> = sample?.into_iter().filter(|at| is_position(*at)).collect();
-        Ok((!usable.is_empty()).then(|| origin(usable)))
+        Ok(origin_of_some(sample?))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::arrays::Arrays;
 use super::columns::FILTER;
-use super::convert::Tally;
+use super::convert::{Tally, is_position};
 use super::layout::Layout;
 use crate::error::Cause;
 use crate::formats::attributes::{Attribute, Values};
@@ -213,7 +213,7 @@ fn positions(mut narrow: Vec<Vec3>, wide: &[DVec3], origin: DVec3) -> Vec<Vec3> 
 
 /// Origin of the positions. A round number: it is a multiple of the power of two above the extent, so that coordinates translated by whole
 /// metres, say, are unchanged. Computed from some of the positions.
-pub fn origin(sample: Vec<DVec3>) -> DVec3 {
+fn origin(sample: Vec<DVec3>) -> DVec3 {
     let [min, max] = usual_box(sample);
     let largest = min.abs().max(max.abs()).max_element();
     let extent = (max - min).max_element();
@@ -237,6 +237,18 @@ fn usual_box(mut points: Vec<DVec3>) -> [DVec3; 2] {
             points.select_nth_unstable_by(rank, |a, b| a[axis].total_cmp(&b[axis])).1[axis]
         }))
     })
+}
+
+/// Number of points from which their origin is computed beforehand, from some of them: they need not be stored in float64 until it is known.
+pub const MANY_POINTS: u64 = 500_000;
+
+/// Number of points for that origin.
+pub const SOME_POINTS: u64 = 1 << 10;
+
+/// The origin of some of the points; `None` if none of them has a position.
+pub fn origin_of_some(mut sample: Vec<DVec3>) -> Option<DVec3> {
+    sample.retain(|at| is_position(*at));
+    (!sample.is_empty()).then(|| origin(sample))
 }
 
 /// Evenly spread entries.
