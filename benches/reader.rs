@@ -1,17 +1,25 @@
 //! The readers alone, from the page cache: bytes per second. Without arguments of PLY files, otherwise of the given ones:
-//! `cargo bench --bench reader -- scan.laz`.
+//! `cargo bench --bench reader -- scan.laz`. With `--once FILE` it reads one file once and prints times and memory as JSON, for
+//! `benches/peers/readers`.
 
 mod support;
 
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use support::{Result, Row, Table, whole};
+use surfel::bench::stopwatch::{Sample, timed};
 use surfel::formats;
+use surfel::geometry::{Cloud, Colours};
 
 fn main() -> Result<()> {
     let folder = tempfile::tempdir()?;
     let given: Vec<PathBuf> =
         std::env::args_os().skip(1).filter(|name| name != "--bench").map(PathBuf::from).collect();
+    if let [first, path] = &given[..]
+        && first == Path::new("--once")
+    {
+        return once(path);
+    }
     let table = Table::new("reading a file from the page cache", None);
     let inputs = if given.is_empty() {
         inputs(folder.path())?
@@ -24,6 +32,36 @@ fn main() -> Result<()> {
         table.compare(vec![Row::new(name, read).of(bytes, "B/s")])?;
     }
     Ok(())
+}
+
+/// Reads a file once; prints the times in s and the bytes of the result and of the memory at its peak.
+fn once(path: &Path) -> Result<()> {
+    let before = memory("VmRSS")?;
+    let (loaded, Sample { wall, cpu, .. }) = timed(|| formats::read(path, &Default::default(), &()))?;
+    let Cloud { positions, normals, radii, colours, .. } = &loaded.cloud;
+    let colours = match colours {
+        None => 0,
+        Some(Colours::Srgb8(codes)) => size_of_val(&codes[..]),
+        Some(Colours::Linear(linear)) => size_of_val(&linear[..]),
+    };
+    let others = normals.as_ref().map_or(0, |all| size_of_val(&all[..]))
+        + radii.as_ref().map_or(0, |all| size_of_val(&all[..]));
+    let measured = serde_json::json!({
+        "wall": wall / 1e3,
+        "cpu": cpu / 1e3,
+        "peak": memory("VmHWM")?.saturating_sub(before),
+        "result": size_of_val(&positions[..]) + colours + others,
+        "points": positions.len(),
+    });
+    println!("{measured}");
+    Ok(())
+}
+
+/// A line of the process's status, bytes.
+fn memory(name: &str) -> Result<usize> {
+    let text = std::fs::read_to_string("/proc/self/status")?;
+    let line = text.lines().find(|line| line.starts_with(name)).ok_or("there is no such line")?;
+    Ok(line.split_whitespace().nth(1).ok_or("it has no value")?.parse::<usize>()? * 1024)
 }
 
 /// Five million coloured points with normals in 135 MB, fewer points as text, and a mesh if it is present.
