@@ -1,6 +1,6 @@
 //! Histogram of the values that colours show, with the ends of the range to drag.
 
-use super::raster::short;
+use super::raster::short_in;
 use crate::viewer::distribution::Distribution;
 use egui::{Color32, CursorIcon, Painter, Rect, Response, Sense, Stroke, Ui, pos2, vec2};
 use surfel::geometry::{ColourMap, ColourScale, ValueRange};
@@ -108,7 +108,7 @@ fn tooltip(response: &Response, axis: &Axis, of: &Distribution) -> String {
         (start..end).contains(&value)
     });
     found.map_or(String::new(), |index| {
-        let [start, end] = of.bin(index).map(short);
+        let [start, end] = of.bin(index).map(|value| short_in(value, &of.domain));
         format!("{start} to {end}: {}\n", thousands(of.counts[index]))
     })
 }

@@ -1,7 +1,7 @@
 //! Legend on the picture: what its colours mean, with the range of values.
 
 use super::UiState;
-use super::raster::{paint_bar, short};
+use super::raster::{paint_bar, short_in};
 use crate::viewer::state::ViewState;
 use egui::{Align2, Color32, FontId, Rect, Ui, pos2, vec2};
 use surfel::formats::colour_bar::ColourBar;
@@ -88,7 +88,7 @@ impl Legend {
         painter.rect_filled(rect.expand(5.0), 3.0, Color32::from_black_alpha(190));
         let below = rect.top() + name.size().y + 3.0;
         painter.galley(rect.min, name, ink);
-        let Some(ValueRange { min, max }) = self.range else { return };
+        let Some(range @ ValueRange { min, max }) = self.range else { return };
         let bar = Rect::from_min_size(pos2(rect.left(), below), vec2(bar[0].min(room), 12.0));
         match &self.colours {
             Colours::Map(map) => paint_bar(&painter, bar, |part| map.at(part)),
@@ -104,7 +104,7 @@ impl Legend {
             (bar.center_bottom(), Align2::CENTER_TOP, 0.5 * (min + max)),
             (bar.right_bottom(), Align2::RIGHT_TOP, max),
         ] {
-            painter.text(at + vec2(0.0, 2.0), align, short(value), font.clone(), ink);
+            painter.text(at + vec2(0.0, 2.0), align, short_in(value, &range), font.clone(), ink);
         }
     }
 }

@@ -173,7 +173,7 @@ pub fn colour_bar(ui: &mut Ui, scale: &ColourScale) {
     ];
     for (part, align, value) in ends {
         let at = pos2(rect.left() + part * rect.width(), rect.bottom());
-        painter.text(at, align, short(value), font.clone(), ink);
+        painter.text(at, align, short_in(value, &scale.range), font.clone(), ink);
     }
 }
 
@@ -200,6 +200,20 @@ pub fn short(value: f64) -> String {
     }
 }
 
+/// Formats a value of a range with as many digits as tell thousandths of the range apart.
+pub fn short_in(value: f64, range: &ValueRange) -> String {
+    let width = range.max - range.min;
+    let size = range.min.abs().max(range.max.abs());
+    if !(width > 1e-9 * size && size < 1e9) {
+        return short(value);
+    }
+    match 2 - width.log10().floor() as i32 {
+        digits @ 0..=6 => format!("{value:.*}", digits as usize),
+        ..0 => format!("{value:.0}"),
+        _ => short(value),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -217,6 +231,17 @@ mod tests {
         assert_eq!(raster.pixel_text([0, 1]).unwrap(), "(0, 1)  nothing");
         assert_eq!(raster.pixel_text([1, 1]).unwrap(), "(1, 1)  2");
         assert_eq!(raster.pixel_text([2, 0]), None);
+    }
+
+    #[test]
+    fn values_of_a_narrow_range_differ() {
+        let text = |min, max| short_in(min, &ValueRange { min, max });
+        assert_eq!(
+            [text(245_380.25, 245_500.0), text(407.03, 432.2), text(-0.5, 0.5)],
+            ["245380", "407.0", "-0.50"]
+        );
+        assert_eq!([text(0.0, 1e-12), text(0.0, 1e12), text(5.0, 5.0)], ["0", "0", "5.000"]);
+        assert_eq!([text(0.0, 65_535.0), text(1e7, 1e7 + 0.5)], ["0", "10000000.000"]);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Render settings panel: shading, colours, background, radii.
 
 use super::histogram;
-use super::raster::short;
+use super::raster::short_in;
 use super::widgets::{choice, choice_combo, combo};
 use crate::viewer::appearance::ColourAttribute;
 use crate::viewer::choices::Choices;
@@ -108,11 +108,12 @@ pub fn range(ui: &mut Ui, range: &mut ValueRange, map: ColourMap, distribution: 
     }
     ui.horizontal(|ui| {
         let speed = (0.005 * (range.max - range.min)).abs().max(f64::MIN_POSITIVE);
+        let shown = *range;
         let ValueRange { min, max } = range;
-        ui.add(DragValue::new(min).speed(speed).custom_formatter(|value, _| short(value)))
+        ui.add(DragValue::new(min).speed(speed).custom_formatter(|value, _| short_in(value, &shown)))
             .on_hover_text("Smaller values have the first colour.");
         ui.label("to");
-        ui.add(DragValue::new(max).speed(speed).custom_formatter(|value, _| short(value)))
+        ui.add(DragValue::new(max).speed(speed).custom_formatter(|value, _| short_in(value, &shown)))
             .on_hover_text("Greater values have the last colour.");
         if let Some(Distribution { range: default, .. }) = distribution
             && ui.button("default").on_hover_text("From the 1st to the 99th percentile.").clicked()
