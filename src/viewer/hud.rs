@@ -180,13 +180,10 @@ impl Hud {
         if set.is_empty() && free.is_empty() {
             return Ok(());
         }
-        let Self { renderer, pool, device, .. } = self;
-        let done = pool.with_handle(|pool| {
-            device.submit(|queue, _| {
-                let mut all =
-                    set.iter().flat_map(|(id, deltas)| deltas.iter().map(move |delta| (*id, delta)));
-                all.try_for_each(|(id, delta)| renderer.set_texture(queue, pool, id, delta))
-            })
+        let Self { renderer, pool, .. } = self;
+        let done = pool.submit(|queue, pool| {
+            let mut all = set.iter().flat_map(|(id, deltas)| deltas.iter().map(move |delta| (*id, delta)));
+            all.try_for_each(|(id, delta)| renderer.set_texture(queue, pool, id, delta))
         })?;
         done.map_err(|error| convert_error(&error))?;
         self.device.wait_idle()?;
@@ -198,5 +195,31 @@ impl Drop for Hud {
     fn drop(&mut self) {
         // Pending updates are not needed any more.
         self.textures.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::viewer::tests::device;
+    use std::sync::mpsc;
+    use std::thread;
+    use std::time::Duration;
+    use surfel::vk::CommandPool;
+
+    #[test]
+    fn a_submission_and_a_wait_do_not_wait_for_each_other() {
+        let Some(device) = device("a_submission_and_a_wait_do_not_wait_for_each_other") else { return };
+        let (done, both) = mpsc::channel();
+        let (drops, submits, dropping) = (done.clone(), done, device.clone());
+        thread::spawn(move || {
+            (0..500).for_each(|_| drop(CommandPool::new(&dropping).unwrap()));
+            drops.send(())
+        });
+        thread::spawn(move || {
+            let pool = CommandPool::new(&device).unwrap();
+            (0..5_000).for_each(|_| pool.submit(|_, _| thread::yield_now()).unwrap());
+            submits.send(())
+        });
+        (0..2).for_each(|_| both.recv_timeout(Duration::from_secs(60)).expect("they wait for each other"));
     }
 }

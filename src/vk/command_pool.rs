@@ -22,11 +22,14 @@ impl CommandPool {
         Ok(Self { raw: raw.map_err(Error::vulkan("vkCreateCommandPool"))?, device: device.clone() })
     }
 
-    /// Calls `body` with the Vulkan handle, while no other thread begins or destroys command buffers, if labels are enabled.
+    /// Calls `body` with the locked queue and the Vulkan handle, while no other thread begins or destroys command buffers, if labels are enabled.
     #[cfg(feature = "window")]
-    pub fn with_handle<R>(&self, body: impl FnOnce(vk::CommandPool) -> R) -> R {
-        let _alone = self.device.labels.as_ref().map(Labels::lock);
-        body(self.raw)
+    pub fn submit<R>(&self, body: impl FnOnce(vk::Queue, vk::CommandPool) -> R) -> Result<R> {
+        self.device.submit(|queue, _| {
+            // After the queue, as in every submission and wait: in another order two threads may wait for each other.
+            let _alone = self.device.labels.as_ref().map(Labels::lock);
+            body(queue, self.raw)
+        })
     }
 
     /// Allocates a command buffer that lives as long as the pool.
