@@ -33,10 +33,10 @@ const DARK: Theme = Theme { panel: [16; 3], ink: [240; 3], opacity: 0.8 };
 /// Opacity of the panel's edge.
 const EDGE: f64 = 0.4;
 
-/// Writes a picture as [`write`] does; as PNG with a colour bar, if one is given.
+/// Writes a picture as [`write()`] does; as PNG with a colour bar, if one is given.
 ///
 /// # Errors
-/// As [`write`] and [`ColourBar::check`].
+/// As [`write()`] and [`ColourBar::check`].
 pub fn write_with(picture: &Picture, shading: Shading, bar: Option<&ColourBar>, out: &Output) -> Result<()> {
     let Some(bar) = bar else { return write(picture, shading, out) };
     let mut encoded = Encoded::of(picture, shading)?;
