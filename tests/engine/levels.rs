@@ -195,20 +195,26 @@ pub fn quality<'a>(
     (-10.0 * mean.log10(), f64::from(report.counts.unwrap().drawn) / object().count() as f64)
 }
 
-#[test]
-fn a_level_of_two_pixels_is_nearly_as_near_to_the_truth_as_all_points() {
-    let Some(device) = device(DeviceLimits::default()) else { return };
+/// The bumpy sphere, a camera that frames it, and the exact picture of its colours.
+pub fn exact_colours(size: [u32; 2]) -> (Subject, Camera, Picture) {
     let subject = Subject::scene("scene:bumpy-sphere").unwrap();
-    let points = if_whole(2_000_000, 200_000);
-    let size = [if_whole(256, 96); 2];
-    let levels = Levels::of(subject.model(points).unwrap().surfels).unwrap();
     let camera =
         Camera::look_at(DVec3::new(1.7, 1.37, 2.73), DVec3::ZERO, DVec3::Y, 45f64.to_radians(), 1.0, 0.1)
             .unwrap();
     let settings = Settings { shading: Shading::Colour, ..Settings::default() };
-    let exact = Options { filter: Filter::Box, ..Default::default() };
+    let options = Options { filter: Filter::Box, ..Default::default() };
     let exact =
-        truth::render(subject.surface().unwrap(), &camera, &settings, size, &exact, &()).unwrap().picture;
+        truth::render(subject.surface().unwrap(), &camera, &settings, size, &options, &()).unwrap().picture;
+    (subject, camera, exact)
+}
+
+#[test]
+fn a_level_of_two_pixels_is_nearly_as_near_to_the_truth_as_all_points() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let points = if_whole(2_000_000, 200_000);
+    let size = [if_whole(256, 96); 2];
+    let (subject, camera, exact) = exact_colours(size);
+    let levels = Levels::of(subject.model(points).unwrap().surfels).unwrap();
     println!("{points} points at {}²: dB against the exact picture, splats per px", size[0]);
     println!("| method | all points | 1 px | 2 px | 4 px |");
     // Most that 1 and 2 px lose to all points, and that 2 px lose to EWA's. Confetti's picture of all points is the sharpest, and its own loss has

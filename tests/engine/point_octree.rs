@@ -1,37 +1,27 @@
 //! Cuts of the point octree stay near the exact picture, and near that of all points.
 
-use crate::levels::quality;
+use crate::levels::{exact_colours, quality};
 use crate::support::gpu::{assert_silent, device};
 use crate::support::if_whole;
 use crate::support::mesh;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use std::time::Duration;
 use surfel::bench::papers::models::Models;
 use surfel::bench::papers::tables;
 use surfel::bench::runner::{Options as RunnerOptions, Runner};
 use surfel::bench::stopwatch::Effort;
-use surfel::bench::subject::Subject;
-use surfel::geometry::{Camera, Ellipses, Levels, PointOctree, Selection, Surfels};
+use surfel::geometry::{Ellipses, Levels, PointOctree, Selection, Surfels};
 use surfel::settings::methods::{confetti, perspective_ewa};
-use surfel::settings::{Settings, Shading};
-use surfel::verify::truth::{self, Filter, Options};
 use surfel::vk::DeviceLimits;
 
 /// By bounding ellipses and by the covariance alone, beside the grid's levels.
 #[test]
 fn a_cut_of_a_few_square_pixels_is_nearly_as_near_to_the_truth_as_all_points() {
     let Some(device) = device(DeviceLimits::default()) else { return };
-    let subject = Subject::scene("scene:bumpy-sphere").unwrap();
     let points = if_whole(1_000_000, 100_000);
     let size = [if_whole(256, 96); 2];
+    let (subject, camera, exact) = exact_colours(size);
     let surfels = subject.model(points).unwrap().surfels;
-    let camera =
-        Camera::look_at(DVec3::new(1.7, 1.37, 2.73), DVec3::ZERO, DVec3::Y, 45f64.to_radians(), 1.0, 0.1)
-            .unwrap();
-    let settings = Settings { shading: Shading::Colour, ..Settings::default() };
-    let exact = Options { filter: Filter::Box, ..Default::default() };
-    let exact =
-        truth::render(subject.surface().unwrap(), &camera, &settings, size, &exact, &()).unwrap().picture;
     let levels = Levels::of(surfels.clone()).unwrap();
     println!("{points} points at {}²: dB against the exact picture (splats per px)", size[0]);
     println!("| method | hierarchy | all points | 1 px | 2 px | 4 px |");
