@@ -72,7 +72,7 @@ fn every_case_through_every_camera() {
 fn every_case_with_only_small_splats_widened() {
     let mut cases = cases();
     cases.iter_mut().for_each(|case| case.settings.widen = Widen::Small);
-    assert_agree(failures(&cases, &alternating_views(0, 4), "only small"));
+    assert_agree(failures(&cases, &alternating_views(0, 6), "only small"));
 }
 
 #[test]
@@ -85,7 +85,7 @@ fn every_case_by_every_method() {
             widen: method.widen,
             ..case.settings.clone()
         });
-        failures(&cases, &alternating_views(i, 6), method.name)
+        failures(&cases, &alternating_views(i, 8), method.name)
     };
     assert_agree(Method::SPLATTING[1..].iter().enumerate().flat_map(by).collect());
 }
@@ -95,7 +95,7 @@ fn every_case_with_coverage() {
     let all = [Splatting::default(), object_ewa::METHOD.splatting, sprites::UNFILTERED.splatting];
     let by = |(i, splatting): (usize, Splatting)| {
         let cases = with_axes(|case| Settings { splatting, alpha: Alpha::Coverage, ..case.settings.clone() });
-        failures(&cases, &alternating_views(i, 6), &format!("coverage, {splatting:?}"))
+        failures(&cases, &alternating_views(i, 8), &format!("coverage, {splatting:?}"))
     };
     assert_agree(all.into_iter().enumerate().flat_map(by).collect());
 }
@@ -111,7 +111,7 @@ fn every_case_with_filtered_pixels() {
             lowpass: lowpass(case),
             ..case.settings.clone()
         };
-        failures(&with_axes(filtered), &alternating_views(i, 4), &format!("filtered, {alpha:?}"))
+        failures(&with_axes(filtered), &alternating_views(i, 6), &format!("filtered, {alpha:?}"))
     };
     assert_agree([Alpha::Coverage, Alpha::Mask].into_iter().enumerate().flat_map(by).collect());
 }
@@ -129,7 +129,7 @@ fn every_case_with_sides() {
     let by = |(i, (splatting, alpha)): (usize, (Splatting, Alpha))| {
         let cases =
             with_axes(|case| Settings { splatting, alpha, cull: Cull::Auto, ..case.settings.clone() });
-        failures(&cases, &alternating_views(i, 7), &format!("sides, {alpha:?}, {splatting:?}"))
+        failures(&cases, &alternating_views(i, 9), &format!("sides, {alpha:?}, {splatting:?}"))
     };
     assert_agree(all.into_iter().enumerate().flat_map(by).collect());
 }
@@ -208,7 +208,7 @@ fn every_case_by_other_axes() {
     ];
     let by = |(i, splatting): (usize, Splatting)| {
         let cases = with_axes(|case| Settings { splatting, ..case.settings.clone() });
-        failures(&cases, &one_rasterizer(sampled_views(i, 8), i), &format!("{splatting:?}"))
+        failures(&cases, &one_rasterizer(sampled_views(i, 11), i), &format!("{splatting:?}"))
     };
     assert_agree(all.into_iter().enumerate().flat_map(by).collect());
 }
