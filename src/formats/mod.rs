@@ -53,7 +53,7 @@ mod writer;
 
 pub use attributes::{Attribute, Values, WantedAttributes};
 pub use filter::{Filter, FilterCounts, Returns, class_name};
-pub use reader::{Inspected, Loaded, ReadOptions, extensions, inspect, read, read_bytes};
+pub use reader::{Inspected, Loaded, ReadOptions, extensions, inspect, levels, read, read_bytes};
 pub use report::{Dropped, Faces, Lines, Report};
 pub use survey::Survey;
 pub use writer::{

@@ -31,6 +31,11 @@ pub(super) trait Reader: Sync {
         options: &ReadOptions,
         progress: &dyn Progress,
     ) -> Parsed<Inspected<Cause>>;
+
+    /// Numbers of points of the levels that the file is in the order of, the coarsest first; none of most formats.
+    fn levels(&self, _: &Input<'_>) -> Parsed<Vec<u64>> {
+        Ok(Vec::new())
+    }
 }
 
 /// All formats.
@@ -94,6 +99,9 @@ pub struct ReadOptions {
     pub intensity: bool,
     /// Which points are read.
     pub filter: Filter,
+    /// Number of points that suffice; `None` reads all. Of a file with [`levels`] the finer ones are not read once the coarser ones have as many,
+    /// and the radii, which belong to all points, are left out; other files are read whole.
+    pub min_points: Option<u64>,
     /// Whether points are counted by class and return: [`Report::counts`](super::Report::counts).
     pub counts: bool,
     /// Names of the columns of a text file, instead of its own.
@@ -158,6 +166,17 @@ pub fn read(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Resu
 /// [`Error::Input`], as [`read`].
 pub fn read_bytes(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Loaded> {
     inspect_input(&Input { name, source: Source::of(bytes), folder: None }, options, &())?.loaded
+}
+
+/// Numbers of points of the levels of a file in the order of an octree (COPC), the coarsest first; empty for other files.
+///
+/// # Errors
+/// [`Error::Io`] if the file cannot be opened; [`Error::Input`] if the format is not supported, or the octree is damaged.
+pub fn levels(path: &Path) -> Result<Vec<u64>> {
+    let name = path.display().to_string();
+    let source = Source::open(path, |_| false)?;
+    let input = Input { name: &name, source, folder: path.parent() };
+    reader_of(&input).and_then(|reader| reader.levels(&input)).map_err(|cause| cause.in_input(name.as_str()))
 }
 
 fn inspect_input(input: &Input<'_>, options: &ReadOptions, progress: &dyn Progress) -> Result<Inspected> {

@@ -28,9 +28,6 @@ static WRITERS: &[&dyn Writer] = &[
     &super::e57::E57,
 ];
 
-/// Extension of LAZ files in the order of an octree, which a plain LAZ file must not have.
-const COPC: &str = ".copc.laz";
-
 /// What a file is written from.
 #[derive(Clone, Copy, Debug)]
 pub struct Contents<'a> {
@@ -101,11 +98,11 @@ impl Written {
     }
 }
 
-/// Writes a model in the format of the extension: PLY, LAS, LAZ or E57. The file is replaced completely or, after an error, not at all. The
+/// Writes a model in the format of the extension: PLY, LAS, LAZ, COPC (`.copc.laz`) or E57. The file is replaced completely or, after an error, not at all. The
 /// progress stage is `writing`.
 ///
 /// A PLY file has surfels, lines and triangles ([`ply::write`]). Files of points have one point per surfel, in the order of the inputs if the
-/// surfels have [indices](crate::geometry::Surfels::point_indices), with the coordinates and attributes of the inputs.
+/// surfels have [indices](crate::geometry::Surfels::point_indices), or of its octree in COPC, with the coordinates and attributes of the inputs.
 ///
 /// # Errors
 /// [`Error::Usage`] as [`check_writable`], and if the arrays differ in length or the format cannot hold the model; [`Error::Io`] if the file
@@ -141,9 +138,6 @@ fn extension(path: &Path) -> Option<String> {
 
 fn writer_of(path: &Path) -> Result<&'static dyn Writer> {
     let name = path.display();
-    if name.to_string().to_lowercase().ends_with(COPC) {
-        return Err(Error::Usage(format!("{name}: COPC is not written: name the file .laz, without .copc")));
-    }
     let own = extension(path);
     let has = |writer: &&&dyn Writer| own.as_deref().is_some_and(|own| writer.extensions().contains(&own));
     WRITERS.iter().find(has).copied().ok_or_else(|| {
@@ -171,12 +165,11 @@ mod tests {
 
     #[test]
     fn a_writer_is_chosen_by_extension() {
-        for name in ["a.ply", "b/a.LAZ", "a.las", "a.e57"] {
+        for name in ["a.ply", "b/a.LAZ", "a.copc.laz", "a.las", "a.e57"] {
             assert!(writer_of(Path::new(name)).is_ok(), "{name}");
         }
         let failure = |name: &str| check_writable(Path::new(name)).unwrap_err().to_string();
         assert_eq!(failure("a.obj"), "a.obj: name the file .ply, .las, .laz, .e57");
         assert!(failure("a").contains("name the file .ply"));
-        assert!(failure("a.copc.LAZ").contains("COPC is not written: name the file .laz"));
     }
 }

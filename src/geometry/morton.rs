@@ -41,7 +41,7 @@ fn code(p: Vec3, min: DVec3, scale: f64) -> u64 {
 }
 
 /// Moves bit `i` of the low 21 bits to bit `3 i`.
-pub(super) fn spread(x: u64) -> u64 {
+pub(crate) fn spread(x: u64) -> u64 {
     let x = (x | x << 32) & 0x001f_0000_0000_ffff;
     let x = (x | x << 16) & 0x001f_0000_ff00_00ff;
     let x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
@@ -50,7 +50,7 @@ pub(super) fn spread(x: u64) -> u64 {
 }
 
 /// Inverse of [`spread`]; other bits are ignored.
-pub(super) fn gathered(x: u64) -> u64 {
+pub(crate) fn gathered(x: u64) -> u64 {
     let x = x & 0x1249_2492_4924_9249;
     let x = (x | x >> 2) & 0x10c3_0c30_c30c_30c3;
     let x = (x | x >> 4) & 0x100f_00f0_0f00_f00f;

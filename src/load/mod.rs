@@ -4,11 +4,13 @@
 //! merged.
 
 mod colouring;
+mod preview;
 mod shading;
 mod suggestion;
 mod warnings;
 
 pub use colouring::{Coloured, Colouring, label};
+pub use preview::Preview;
 pub use shading::SuggestedShading;
 pub use suggestion::{Suggestion, Uncoloured};
 
@@ -43,7 +45,8 @@ pub struct LoadOptions {
     pub lines: Option<ToLines>,
     /// Tolerance of the simplification of lines, in the positions' unit; `None` keeps all vertices.
     pub simplify: Option<f64>,
-    /// Number of points kept of each file, evenly spread, without lines and faces; `None` keeps all.
+    /// Number of points kept of each file, evenly spread, without lines and faces; `None` keeps all. Of a file with
+    /// [levels](formats::levels) only the coarser ones are read, as many as it takes.
     pub points: Option<u64>,
     /// Side of the voxels that keep one point each, in the positions' unit; `None` keeps all points.
     pub voxel: Option<f64>,
@@ -69,28 +72,12 @@ pub trait Listener: Progress {
         false
     }
 
-    /// Receives a preview as soon as the points are read.
+    /// Receives a preview as soon as the points are read, or the coarsest levels of a file that has levels.
     fn preview(&self, _preview: Preview) {}
-}
-
-/// Some of many points, with their own normals and radii.
-#[derive(Clone, Debug)]
-pub struct Preview {
-    /// The points.
-    pub model: Model,
-    /// The up direction, as [`LoadedModel::up`].
-    pub up: DVec3,
-    /// What they can be coloured by, as [`LoadedModel::suggestion`].
-    pub suggestion: Option<Suggestion>,
 }
 
 /// Ignores notes and previews.
 impl Listener for () {}
-
-/// Number of points of a preview.
-const PREVIEW: usize = 20_000;
-/// Minimum number of points for a preview, as a multiple of its own: fewer points load as fast as a preview.
-const WORTH_A_PREVIEW: usize = 5;
 
 /// The model of all inputs, and where it comes from.
 #[derive(Clone, Debug)]
@@ -123,6 +110,8 @@ pub struct LoadedModel {
 struct Load<'a> {
     options: &'a LoadOptions,
     listener: &'a dyn Listener,
+    /// Whether warnings of reading are logged.
+    warns: bool,
 }
 
 /// An input that was read.
@@ -148,13 +137,14 @@ pub fn load(
     listener: &dyn Listener,
 ) -> Result<LoadedModel> {
     let inputs: Vec<&OsStr> = inputs.iter().map(AsRef::as_ref).collect();
-    Load { options, listener }.all(&inputs)
+    Load { options, listener, warns: true }.all(&inputs)
 }
 
 impl Load<'_> {
     fn all(&self, inputs: &[&OsStr]) -> Result<LoadedModel> {
         self.check_property(inputs)?;
         self.check_points(inputs)?;
+        let is_previewed = self.preview_levels(inputs);
         let (mut parts, mut read, mut dropped) = (Vec::new(), 0, Dropped::default());
         let (mut skipped, mut faces): (Vec<String>, Vec<u64>) = Default::default();
         let (mut sources, mut points): (Vec<PointSource>, usize) = Default::default();
@@ -191,7 +181,7 @@ impl Load<'_> {
             let mut clouds: Vec<_> = parts.iter_mut().map(|part| &mut part.cloud).collect();
             colouring.colour_clouds(&mut clouds, self.listener)
         });
-        if self.listener.wants_preview() {
+        if self.listener.wants_preview() && !is_previewed {
             let model = self.preview(&parts, colouring, up);
             let preview = |model| Preview { model, up, suggestion: suggestion.clone() };
             model.into_iter().for_each(|model| self.listener.preview(preview(model)));
@@ -272,6 +262,7 @@ impl Load<'_> {
             scalar: self.property().map(str::to_owned),
             intensity: self.options.uncoloured != Uncoloured::Plain,
             filter: self.options.filter.clone(),
+            min_points: self.options.points,
             counts: self.options.counts,
             columns: self.options.columns.clone(),
             triangles: self.draws_faces(),
@@ -289,7 +280,9 @@ impl Load<'_> {
         let source = PointSource { points, attributes, survey, skipped };
         let scalar = report.scalar.clone();
         let name = Path::new(input).display().to_string();
-        warnings::log(&name, &report);
+        if self.warns {
+            warnings::log(&name, &report);
+        }
         self.note_filtered(&name, &report);
         let cloud = self.options.points.map(|points| cloud.some(points as usize)).unwrap_or(cloud);
         Ok((Part { name, cloud, draws_faces: false, up, scalar }, source, Some(report)))
@@ -302,8 +295,10 @@ impl Load<'_> {
             let [left_out, points] = [left_out, *points].map(thousands);
             self.listener.note(&format!("{name}: {left_out} of {points} points left out{why}"));
         };
-        if let (1.., Some(every)) = (*thinned, self.options.filter.every) {
-            note(*thinned, &format!(": one in {} is read", thousands(every.get())));
+        match (*thinned, self.options.filter.every) {
+            (0, _) => {}
+            (_, Some(every)) => note(*thinned, &format!(": one in {} is read", thousands(every.get()))),
+            (_, None) => note(*thinned, ": they are of finer levels"),
         }
         if *filtered > 0 {
             note(*filtered, " by the filter");
@@ -353,28 +348,6 @@ impl Load<'_> {
             model.surfels.sort_morton();
         }
         Ok((model, total))
-    }
-
-    /// A preview of some points with their own normals and radii; `None` for few points, and if lines or faces are rendered.
-    fn preview(&self, parts: &[Part], colouring: Option<&Colouring>, up: DVec3) -> Option<Model> {
-        let all: usize = parts.iter().map(|part| part.cloud.len()).sum();
-        let faces = |part: &Part| {
-            part.cloud.has_lines()
-                || (part.draws_faces || self.draws_faces()) && !part.cloud.triangles.is_empty()
-        };
-        if all < WORTH_A_PREVIEW * PREVIEW || parts.iter().any(faces) {
-            return None;
-        }
-        let some = |part: &Part| part.cloud.some((part.cloud.len() * PREVIEW).div_ceil(all));
-        let clouds = parts.iter().map(some).collect();
-        let cloud = Cloud::merge(clouds, Settings::default().lighting.albedo).ok()?;
-        let how = Estimate { outlines: false, outliers: None, sharp: None, ..self.options.estimate.clone() };
-        // Estimation may fail for few points and succeed for all: then there is no preview.
-        let (mut model, _) = cloud.into_model(false, &how, &()).ok()?;
-        if let Some(colouring) = colouring.filter(|colouring| colouring.property().is_none()) {
-            colouring.colour_model(&mut model, up, &());
-        }
-        Some(model)
     }
 
     /// Estimates the model of a part.

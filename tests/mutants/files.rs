@@ -89,7 +89,8 @@ pub fn all() -> Vec<Vec<u8>> {
 pub fn of_formats(extensions: &[&str]) -> Vec<Vec<u8>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/formats");
     let mut paths: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    paths.retain(|path| path.extension().is_some_and(|own| extensions.iter().any(|one| own == *one)));
+    let has = |path: &Path, extension: &str| path.to_string_lossy().ends_with(&format!(".{extension}"));
+    paths.retain(|path| extensions.iter().any(|extension| has(path, extension)));
     paths.sort();
     paths.iter().map(|path| std::fs::read(path).unwrap()).collect()
 }

@@ -47,7 +47,8 @@ fn no_mutant_breaks_a_reader() {
     let loaded = examine_mutants("PLY", &files::all(), count);
     // Damage that is always found at once would test nothing but the header.
     assert!(loaded > count / 10 && loaded < count * 9 / 10, "{loaded}");
-    let stored = [&["las"][..], &["laz"], &["e57"], &["pcd"], &["xyz", "xyzn", "xyzrgb", "pts"]];
+    let stored =
+        [&["las"][..], &["laz"], &["copc.laz"], &["e57"], &["pcd"], &["xyz", "xyzn", "xyzrgb", "pts"]];
     let stored = stored.map(|extensions| (extensions[0], files::of_formats(extensions)));
     for (format, files) in stored.into_iter().chain(made::all()) {
         let count = if_whole(MUTANTS, MUTANTS / 100);
@@ -110,7 +111,9 @@ fn read(format: &str, bytes: &[u8]) -> surfel::Result<Loaded> {
     let scalar = ["radius\n", "tag\n"].iter().find(|name| named(name)).map(|name| name.trim_end().into());
     // Only its name tells what it is.
     let name = if format == "splat" { "mutant.splat" } else { "mutant" };
-    formats::read_bytes(name, bytes, &ReadOptions { scalar, ..Default::default() })
+    // The nodes of an octree are needed for its coarse levels alone.
+    let min_points = (format == "copc.laz").then_some(1);
+    formats::read_bytes(name, bytes, &ReadOptions { scalar, min_points, ..Default::default() })
 }
 
 /// Whether it can be read; panics if anything about it is wrong.

@@ -14,7 +14,7 @@ pub struct Convert {
     /// PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, SPLAT, SPZ or text files, or built-in scenes such as scene:bumpy-sphere; several become one file
     #[arg(required = true, value_name = "INPUT")]
     pub inputs: Vec<OsString>,
-    /// The file to write: .ply, .las, .laz or .e57
+    /// The file to write: .ply, .las, .laz, .copc.laz or .e57
     ///
     /// A PLY file holds position, normal and radius; and where there are any, axes of ellipses, two-sidedness, clip lines, normalization
     /// weights, tangents, colour, edges and faces. LAS and LAZ files hold points with all properties of the inputs, and normal, radius, axes

@@ -15,7 +15,7 @@ use surfel::settings::Choice;
 /// How normals and radii are estimated.
 #[derive(Args, Debug)]
 pub struct Points {
-    /// Renders N points of each file, evenly spread, with estimated radii and without lines and faces [default: all, as the file has them]
+    /// Renders N points of each file, evenly spread, with estimated radii and without lines and faces; of COPC its coarse levels are read alone [default: all, as the file has them]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub points: Option<u64>,
     /// Reads points of these classes alone, as 2,6 for ground and buildings

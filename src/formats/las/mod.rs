@@ -1,4 +1,4 @@
-//! LAS and LAZ, reader and writer: versions 1.0 to 1.4, point formats 0 to 10, extra bytes.
+//! LAS, LAZ and COPC, reader and writer: versions 1.0 to 1.4, point formats 0 to 10, extra bytes.
 //!
 //! The record's fields are properties of the element `point`, named as laspy names them; `x y z` are scaled and shifted in float64,
 //! `scan_angle` is in degrees. Extra bytes are properties, too: those that are named as [PLY's properties](super::ply), `nx ny nz` and
@@ -6,9 +6,10 @@
 //!
 //! Colours are 16-bit and sRGB-encoded; if no channel of any point exceeds 255 they are 8-bit, and if all are 0 there are none.
 //!
-//! Source: ASPRS LAS specification 1.4 R15; laszip's chunks.
+//! Source: ASPRS LAS specification 1.4 R15; laszip's chunks; COPC specification 1.0.
 
 mod chunks;
+mod copc;
 mod details;
 mod extra;
 mod fields;
@@ -30,6 +31,7 @@ use super::{Inspected, Loaded, ReadOptions, Report};
 use crate::Progress;
 use crate::error::Cause;
 use crate::geometry::{Cloud, Colours};
+use copc::Octree;
 use header::Header;
 use stored::Stored;
 pub(super) use survey::Survey;
@@ -67,9 +69,16 @@ impl Reader for Las {
         };
         let encoding =
             if header.format.is_compressed { Encoding::Compressed } else { Encoding::BinaryLittleEndian };
+        let octree = Octree::read(&header, &input.source);
+        let facts = octree_facts(&octree);
         let loaded = Layout::of(&element, options, false).and_then(|layout| {
-            let points = Stored::find(&header, &input.source)?;
+            let mut points = Stored::find(&header, &input.source)?;
             let origin = points.origin(&header, &input.source)?;
+            if let Some(least) = options.min_points
+                && let (Stored::Chunks(chunks), Some(octree)) = (&mut points, octree?)
+            {
+                octree.keep_coarse(chunks, least)?;
+            }
             let layout = origin.map_or(layout.clone(), |origin| layout.relative_to(origin));
             let table = read::Table {
                 source: &input.source,
@@ -81,8 +90,26 @@ impl Reader for Las {
             };
             load(&table, encoding, progress)
         });
+        let loaded = loaded.map(|mut loaded| {
+            loaded.report.details.extend(facts);
+            loaded
+        });
         Ok(Inspected { format: self.name(), encoding, elements: vec![element], loaded })
     }
+
+    fn levels(&self, input: &Input<'_>) -> Parsed<Vec<u64>> {
+        let octree = Octree::read(&Header::read(input)?, &input.source)?;
+        Ok(octree.map(|octree| octree.levels()).unwrap_or_default())
+    }
+}
+
+/// What is told of the octree of a file, if it has one. Damage to it does not matter to who reads all points.
+fn octree_facts(octree: &Parsed<Option<Octree>>) -> Option<(String, String)> {
+    let text = match octree {
+        Ok(octree) => octree.as_ref()?.summary(),
+        Err(cause) => cause.to_string(),
+    };
+    Some(("octree".into(), text))
 }
 
 fn load(table: &read::Table, encoding: Encoding, progress: &dyn Progress) -> Parsed<Loaded> {

@@ -50,7 +50,8 @@ impl Table<'_> {
     }
 
     fn read_chunks(&self, chunks: &Chunks, meter: &Meter) -> Parsed<(Arrays, Tally)> {
-        let mut arrays = Arrays::new(self.header.count, self.layout)?;
+        let count = chunks.all.iter().map(|chunk| chunk.rows as u64).sum();
+        let mut arrays = Arrays::new(count, self.layout)?;
         let used = self.used();
         let selection = selection(&used);
         let sizes = chunks.all.iter().map(|chunk| chunk.rows);
@@ -68,7 +69,8 @@ impl Table<'_> {
                 Err(damaged(index, chunk, &cause.to_string()).into())
             })
         })?;
-        Ok((arrays, tally))
+        let left_out = self.header.count - count;
+        Ok((arrays, Tally { thinned: tally.thinned + left_out, ..tally }))
     }
 
     fn convert(&self, records: &[u8], used: &[(usize, &Field)], rows: &mut Rows) {

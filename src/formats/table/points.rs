@@ -75,7 +75,7 @@ impl Points {
         let Tally { lacking, clip_lines, weights, counts, .. } = tally;
         let has = [0, 1, 2].map(|index| layout.fills(FILTER + index));
         Ok(Self {
-            cloud: if step > 1 { cloud.without_sizes() } else { cloud },
+            cloud: if dropped.thinned > 0 { cloud.without_sizes() } else { cloud },
             dropped,
             count,
             step,

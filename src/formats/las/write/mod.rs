@@ -1,11 +1,13 @@
-//! LAS writer, and LAZ: one record per point, with what a disc has beyond a point as extra bytes.
+//! LAS writer, and LAZ and COPC: one record per point, with what a disc has beyond a point as extra bytes.
 //!
-//! The point format is that of LAS inputs, or else the smallest of 0 to 3 (LAS 1.2), or 6 to 8 (LAS 1.4), that holds the attributes. Records of
-//! the inputs (coordinate system, names of classes) are kept.
+//! The point format is that of LAS inputs, or else the smallest of 0 to 3 (LAS 1.2), or 6 to 8 (LAS 1.4), that holds the attributes; COPC has 6
+//! to 8. Records of the inputs (coordinate system, names of classes) are kept.
 //!
-//! Source: ASPRS LAS specification 1.4 R15; laszip.
+//! Source: ASPRS LAS specification 1.4 R15; laszip; COPC specification 1.0.
 
 mod columns;
+mod copc;
+mod octree;
 mod plan;
 mod records;
 mod scale;
@@ -21,7 +23,7 @@ use crate::formats::point_table::PointTable;
 use crate::formats::reader::Reader;
 use crate::formats::writer::{Contents, Writer, Written, point_table};
 use laz::{LasZipError, LazVlr, ParLasZipCompressor};
-use plan::Plan;
+use plan::{Plan, Storage};
 use rayon::prelude::*;
 use std::io::{self, Seek, Write};
 use std::path::Path;
@@ -36,20 +38,33 @@ impl Writer for Las {
 
     fn write(&self, path: &Path, contents: &Contents<'_>, progress: &dyn Progress) -> Result<Written> {
         let table = point_table(path, contents)?;
-        let compressed = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("laz"));
+        let storage = storage(path);
         let mut written = Written::default();
-        let plan = Plan::of(&table, compressed, &mut written)
+        let plan = Plan::of(&table, storage, &mut written)
             .map_err(|cause| cause.in_input(path.display().to_string()))?;
         let meter = Meter::of_writing(progress, table.len() as u64);
-        atomic::write(path, |out| {
-            out.write_all(&plan.head)?;
-            match &plan.compression {
-                None => each_piece(&plan, &table, &meter, |records| out.write_all(records)),
-                Some(compression) => compress(out, compression, &plan, &table, &meter),
+        atomic::write(path, |out| match &plan.compression {
+            Some(compression) if storage == Storage::Octree => {
+                copc::write(out, (&plan, compression), &table, &meter).map_err(of_system)
+            }
+            Some(compression) => compress(out, compression, &plan, &table, &meter),
+            None => {
+                out.write_all(&plan.head)?;
+                each_piece(&plan, &table, &meter, |records| out.write_all(records))
             }
         })?;
         meter.finish();
         Ok(written)
+    }
+}
+
+/// How the points of a file with this name are stored.
+fn storage(path: &Path) -> Storage {
+    let name = path.to_string_lossy().to_lowercase();
+    match name.rsplit_once('.') {
+        Some((stem, "laz")) if stem.ends_with(".copc") => Storage::Octree,
+        Some((_, "laz")) => Storage::Chunks,
+        _ => Storage::Records,
     }
 }
 
@@ -60,6 +75,7 @@ fn compress(
     table: &PointTable,
     meter: &Meter,
 ) -> io::Result<()> {
+    out.write_all(&plan.head)?;
     let mut compressor = ParLasZipCompressor::new(out, compression.clone()).map_err(io::Error::other)?;
     each_piece(plan, table, meter, |records| compressor.compress_many(records).map_err(of_system))?;
     compressor.done().map_err(|error| of_system(io::Error::other(error)))

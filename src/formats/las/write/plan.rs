@@ -1,8 +1,9 @@
 //! Point format, header and fields of a written file.
 
 use super::columns::{Range, field_name, intensity_scale};
-use super::records;
+use super::octree::Cube;
 use super::scale::{Scale, Stored, bounds};
+use super::{copc, records};
 use crate::formats::declared::Scalar;
 use crate::formats::disc;
 use crate::formats::las::fields::{self, Field};
@@ -36,6 +37,16 @@ pub const WAVES: [&str; 7] = [
 /// Largest description of extra bytes: a record has at most 65,535 bytes.
 const MOST_EXTRAS: usize = 341;
 
+/// How points are stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Storage {
+    Records,
+    /// Compressed, in the order of the table.
+    Chunks,
+    /// Compressed, in the order of an octree.
+    Octree,
+}
+
 /// How a file is written.
 pub struct Plan<'a> {
     /// Header and records before the points.
@@ -45,6 +56,9 @@ pub struct Plan<'a> {
     pub stride: usize,
     /// Points of a chunk.
     pub chunk: usize,
+    pub scale: Scale,
+    /// The root's cell of an octree.
+    pub cube: Cube,
     fields: Vec<(Field, Input<'a>)>,
     has_colours: bool,
 }
@@ -70,7 +84,7 @@ struct Mapped<'a> {
 
 impl<'a> Plan<'a> {
     /// The plan for a table; says in `written` what is rounded and what is left out.
-    pub fn of(table: &'a PointTable, compressed: bool, written: &mut Written) -> Parsed<Self> {
+    pub fn of(table: &'a PointTable, storage: Storage, written: &mut Written) -> Parsed<Self> {
         written.leave_out_elements(table);
         let (waves, columns): (Vec<&Column>, Vec<&Column>) =
             table.columns.iter().partition(|column| WAVES.contains(&column.name.as_str()));
@@ -84,8 +98,12 @@ impl<'a> Plan<'a> {
             Mapped { column, name, range }
         });
         let mapped: Vec<Mapped> = mapped.collect();
-        let number = point_format(table, &mapped)?;
+        let in_octree = storage == Storage::Octree;
+        let number = point_format(table, &mapped, in_octree)?;
         let mut records = records::of_inputs(table.contents.inputs, written);
+        if in_octree {
+            records::say_system(&records, written);
+        }
         let (standard, _) = fields_of(number, &[])?;
         let extras = extras(table, &mapped, &standard, written);
         if !extras.is_empty() {
@@ -97,16 +115,25 @@ impl<'a> Plan<'a> {
         let inputs: Vec<Input> =
             fields.iter().map(|field| input(field, &standard, &mapped, written)).collect();
         let extra_bytes = stride as u16 - Format::new(number).map_or(0, |format| format.len());
-        let compression = compressed.then(|| compression(number, extra_bytes)).transpose()?;
+        let compression = match storage {
+            Storage::Records => None,
+            _ => Some(compression(number, extra_bytes, in_octree)?),
+        };
         if let Some(compression) = &compression {
             records.push(records::of_compression(compression).map_err(|error| error.to_string())?);
         }
         let scale = Scale::of(table, bounds(table));
         let stored = scale.bounds(table);
         say_error(&scale, stored, written);
+        let cube = Cube::of(stored.map(|stored| [stored.min, stored.max]).unwrap_or_default());
+        if in_octree {
+            let time = mapped.iter().find(|mapped| mapped.name == "gps_time").and_then(|mapped| mapped.range);
+            let time = time.map(|range| [range.min, range.max]).unwrap_or_default();
+            records.insert(0, records::of_octree(copc::info(&cube, time)));
+        }
         let mut raw = header(table, number, &records, scale, stored);
         raw.point_data_record_length = stride as u16;
-        raw.point_data_record_format |= if compressed { 0x80 } else { 0 };
+        raw.point_data_record_format |= if compression.is_some() { 0x80 } else { 0 };
         count(table, &fields, &inputs, &mut raw);
         let mut fields: Vec<_> = fields.into_iter().zip(inputs).collect();
         for (field, input) in &mut fields {
@@ -116,7 +143,7 @@ impl<'a> Plan<'a> {
         }
         let head = head(raw, &records).map_err(|error| error.to_string())?;
         let has_colours = table.has_colours();
-        Ok(Self { head, compression, stride, chunk: CHUNK, fields, has_colours })
+        Ok(Self { head, compression, stride, chunk: CHUNK, scale, cube, fields, has_colours })
     }
 
     /// Fills the record of a row.
@@ -140,8 +167,8 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// The point format of LAS inputs, or else the smallest that holds all attributes.
-fn point_format(table: &PointTable, mapped: &[Mapped]) -> Parsed<u8> {
+/// The point format of LAS inputs, or else the smallest that holds all attributes; an octree has 6 to 8 alone.
+fn point_format(table: &PointTable, mapped: &[Mapped], in_octree: bool) -> Parsed<u8> {
     let has = |name: &str| mapped.iter().any(|mapped| mapped.name == name);
     let colour = table.has_colours();
     let legacy = u8::from(has("gps_time")) + if colour { 2 } else { 0 };
@@ -159,7 +186,7 @@ fn point_format(table: &PointTable, mapped: &[Mapped]) -> Parsed<u8> {
         .iter()
         .filter_map(|input| input.survey.las.as_ref())
         .any(|survey| survey.raw.point_data_record_format & 0x3f >= 6);
-    if !is_extended && !mapped.iter().any(|mapped| lacks(&mapped)) {
+    if !in_octree && !is_extended && !mapped.iter().any(|mapped| lacks(&mapped)) {
         return Ok(legacy);
     }
     Ok(if has("nir") { 8 } else { 6 + u8::from(colour) })
@@ -269,10 +296,15 @@ fn input<'a>(field: &Field, standard: &[Field], mapped: &[Mapped<'a>], written: 
     Input::Column(first.column, [1.0, 0.0], missing)
 }
 
-fn compression(number: u8, extra_bytes: u16) -> Parsed<LazVlr> {
+fn compression(number: u8, extra_bytes: u16, in_octree: bool) -> Parsed<LazVlr> {
     let builder = LazVlrBuilder::default().with_point_format(number, extra_bytes);
     let builder = builder.map_err(|error| error.to_string())?;
-    Ok(builder.with_fixed_chunk_size(CHUNK as u32).build())
+    let builder = if in_octree {
+        builder.with_variable_chunk_size()
+    } else {
+        builder.with_fixed_chunk_size(CHUNK as u32)
+    };
+    Ok(builder.build())
 }
 
 /// Notes how far coordinates are rounded, beyond rounding errors of float64.

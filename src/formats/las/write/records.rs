@@ -1,5 +1,6 @@
 //! Variable length records of a written file.
 
+use crate::formats::las::copc::{INFO, Info, USER};
 use crate::formats::las::header::Record;
 use crate::formats::writer::{PointSource, Written};
 use las::raw;
@@ -61,6 +62,20 @@ pub fn of_compression(compression: &LazVlr) -> std::io::Result<Record> {
     compression.write_to(&mut data)?;
     let [user, description] = [LazVlr::USER_ID, LazVlr::DESCRIPTION].map(str::to_owned);
     Ok(Record { user, id: LazVlr::RECORD_ID, description, data })
+}
+
+/// The record that describes an octree.
+pub fn of_octree(info: Info) -> Record {
+    Record { user: USER.into(), id: INFO, description: "COPC info VLR".into(), data: info.to_bytes() }
+}
+
+/// Notes a coordinate system that a COPC file should have as well-known text, and has not.
+pub fn say_system(records: &[Record], written: &mut Written) {
+    let has_system = records.iter().any(|record| record.user.eq_ignore_ascii_case(PROJECTION));
+    if has_system && !has_wkt(records) {
+        let note = "the coordinate system is in GeoTIFF keys, and programs may look for well-known text alone in COPC";
+        written.notes.push(note.into());
+    }
 }
 
 /// A record as it is written. Its data are at most 65,535 bytes.

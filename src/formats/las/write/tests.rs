@@ -319,3 +319,65 @@ fn errors_name_the_file() {
         assert!(error.to_string().contains("/nowhere does not exist: create it"), "{error}");
     }
 }
+
+/// Rows of the file whose values of these attributes are equal to those of `expected`, in its order.
+fn matched(file: &File, expected: &File, name: &str) -> Vec<usize> {
+    let own = numbers(file, name);
+    let row = |number: &f64| own.iter().position(|own| own == number).unwrap();
+    numbers(expected, name).iter().map(row).collect()
+}
+
+#[test]
+fn every_point_format_is_written_in_the_order_of_an_octree() {
+    let folder = tempfile::tempdir().unwrap();
+    let samples = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/formats");
+    for number in 0..=10 {
+        let before = open(&samples.join(format!("format{number}.las")));
+        let (path, notes) = written(&folder, "a.copc.laz", &before);
+        assert!(notes.notes.is_empty(), "{number}: {notes:?}");
+        let after = open(&path);
+        // The intensity numbers the points.
+        let rows = matched(&after, &before, "intensity");
+        for Attribute { name, values } in &before.inputs[0].attributes {
+            if super::plan::WAVES.contains(&name.as_str()) || name.starts_with("wavepacket") {
+                continue;
+            }
+            let found = attribute(&after, name);
+            // Whole degrees are rounded to steps of 0.006°.
+            let most = if name == "scan_angle" { 0.003 } else { 0.0 };
+            for (index, row) in rows.iter().enumerate() {
+                let [own, expected] = [found.get(*row), values.get(index)].map(Option::unwrap);
+                assert!((own - expected).abs() <= most, "{number} {name}: {own} {expected}");
+            }
+        }
+        let survey = after.inputs[0].survey.las.as_ref().unwrap();
+        let expected = [6, 6, 7, 7, 6, 7, 6, 7, 8, 6, 8][number];
+        assert_eq!(survey.raw.point_data_record_format, expected | 0x80, "{number}");
+        assert_eq!(survey.scale(), before.inputs[0].survey.las.as_ref().unwrap().scale());
+        assert_eq!(crate::formats::levels(&path).unwrap(), [60]);
+    }
+}
+
+#[test]
+fn coarse_levels_of_a_written_octree_are_spread_evenly() {
+    let folder = tempfile::tempdir().unwrap();
+    let surfels = crate::verify::scenes::open("scene:sphere?points=200000").unwrap();
+    let before = File { surfels, cloud: Cloud::default(), inputs: Vec::new() };
+    let path = written(&folder, "sphere.COPC.laz", &before).0;
+    let levels = crate::formats::levels(&path).unwrap();
+    assert!(levels.len() == 2 && levels.iter().sum::<u64>() == 200_000, "{levels:?}");
+    let options = ReadOptions { min_points: Some(1), ..all() };
+    let Loaded { cloud, report, .. } = read(&path, &options, &()).unwrap();
+    assert_eq!((cloud.len() as u64, report.dropped.thinned), (levels[0], 200_000 - levels[0]));
+    assert!(cloud.radii.is_none() && cloud.normals.is_some(), "radii are those of all points");
+    // A point in most of the cells of the root that the sphere meets, one and a half times its area of 4 π (128 / 2)².
+    assert!((50_000..77_000).contains(&levels[0]), "{levels:?}");
+    let octants = cloud.positions.iter().fold([0u64; 8], |mut counts, p| {
+        counts[(p.cmpgt(Vec3::ZERO).bitmask()) as usize] += 1;
+        counts
+    });
+    let [least, most] = [octants.iter().min().unwrap(), octants.iter().max().unwrap()];
+    assert!(*most < least + least / 20, "{octants:?}");
+    let whole = read(&path, &all(), &()).unwrap();
+    assert!(whole.cloud.len() == 200_000 && whole.cloud.radii.is_some());
+}

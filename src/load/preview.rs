@@ -1,0 +1,92 @@
+//! What is shown of many points while they are loaded.
+
+use super::{Colouring, Listener, Load, LoadOptions, LoadedModel, Part, Suggestion};
+use crate::estimate::Estimate;
+use crate::geometry::{Cloud, Model};
+use crate::settings::Settings;
+use crate::{Progress, formats};
+use glam::DVec3;
+use std::ffi::OsStr;
+use std::path::Path;
+
+/// Some of many points, with their own normals and radii.
+#[derive(Clone, Debug)]
+pub struct Preview {
+    /// The points.
+    pub model: Model,
+    /// The up direction, as [`LoadedModel::up`].
+    pub up: DVec3,
+    /// What they can be coloured by, as [`LoadedModel::suggestion`].
+    pub suggestion: Option<Suggestion>,
+}
+
+/// Number of points of a preview.
+const PREVIEW: usize = 20_000;
+/// Minimum number of points for a preview, as a multiple of its own: fewer points load as fast as a preview.
+const WORTH_A_PREVIEW: usize = 5;
+
+/// Cancels with another listener, which hears nothing else.
+struct Silent<'a>(&'a dyn Listener);
+
+impl Progress for Silent<'_> {
+    fn at(&self, _: &'static str, _: u64, _: u64) {}
+
+    fn is_cancelled(&self) -> bool {
+        self.0.is_cancelled()
+    }
+}
+
+impl Listener for Silent<'_> {}
+
+impl Load<'_> {
+    /// Shows the coarsest levels of a file before all of it is read; returns whether it has any and is worth it.
+    pub(super) fn preview_levels(&self, inputs: &[&OsStr]) -> bool {
+        let [input] = inputs else { return false };
+        let is_whole = self.options.points.is_none() && self.options.voxel.is_none();
+        // A pipe can be read once.
+        if !(self.listener.wants_preview() && is_whole && Path::new(input).is_file()) {
+            return false;
+        }
+        // Errors are those of the whole file, too, which reports them.
+        let levels = formats::levels(Path::new(input)).unwrap_or_default();
+        if levels.len() < 2 || levels.iter().sum::<u64>() < (WORTH_A_PREVIEW * PREVIEW) as u64 {
+            return false;
+        }
+        let options = LoadOptions {
+            points: Some(PREVIEW as u64),
+            estimate: self.quick(),
+            attributes: false,
+            ..self.options.clone()
+        };
+        let coarse = Load { options: &options, listener: &Silent(self.listener), warns: false };
+        let Ok(LoadedModel { model, up, suggestion, .. }) = coarse.all(inputs) else { return false };
+        self.listener.preview(Preview { model, up, suggestion });
+        true
+    }
+
+    /// A preview of some points with their own normals and radii; `None` for few points, and if lines or faces are rendered.
+    pub(super) fn preview(&self, parts: &[Part], colouring: Option<&Colouring>, up: DVec3) -> Option<Model> {
+        let all: usize = parts.iter().map(|part| part.cloud.len()).sum();
+        let faces = |part: &Part| {
+            part.cloud.has_lines()
+                || (part.draws_faces || self.draws_faces()) && !part.cloud.triangles.is_empty()
+        };
+        if all < WORTH_A_PREVIEW * PREVIEW || parts.iter().any(faces) {
+            return None;
+        }
+        let some = |part: &Part| part.cloud.some((part.cloud.len() * PREVIEW).div_ceil(all));
+        let clouds = parts.iter().map(some).collect();
+        let cloud = Cloud::merge(clouds, Settings::default().lighting.albedo).ok()?;
+        // Estimation may fail for few points and succeed for all: then there is no preview.
+        let (mut model, _) = cloud.into_model(false, &self.quick(), &()).ok()?;
+        if let Some(colouring) = colouring.filter(|colouring| colouring.property().is_none()) {
+            colouring.colour_model(&mut model, up, &());
+        }
+        Some(model)
+    }
+
+    /// The estimation of a preview.
+    fn quick(&self) -> Estimate {
+        Estimate { outlines: false, outliers: None, sharp: None, ..self.options.estimate.clone() }
+    }
+}
