@@ -159,6 +159,15 @@ fn connectivity(report: &Report, cloud: &Cloud) -> String {
             let _ = writeln!(text, "seen from: far away along {direction}");
         }
     }
+    if let Some(viewpoints) = &cloud.viewpoints {
+        let known = viewpoints.views.iter().filter(|view| **view != View::Unknown).count();
+        let _ = writeln!(
+            text,
+            "seen from: {} of {} scans",
+            thousands(known as u64),
+            thousands(viewpoints.views.len() as u64)
+        );
+    }
     let Faces { understood, skipped } = report.faces;
     if understood + skipped > 0 {
         let [understood, skipped] = [understood, skipped].map(thousands);

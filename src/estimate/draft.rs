@@ -2,7 +2,7 @@
 
 use super::{Estimate, Estimated};
 use crate::error::{Error, Result};
-use crate::geometry::{Clips, Cloud, Ellipse, Surfels, Weights, morton};
+use crate::geometry::{Clips, Cloud, Ellipse, Surfels, View, Viewpoints, Weights, morton};
 use glam::Vec3;
 
 /// Surfels whose missing normals and radii are 0, with the data to estimate them.
@@ -10,6 +10,8 @@ pub(super) struct Draft {
     pub surfels: Surfels,
     /// Triangles between the surfels.
     pub triangles: Vec<[u32; 3]>,
+    view: View,
+    viewpoints: Option<Viewpoints>,
     pub estimated: Estimated,
 }
 
@@ -52,7 +54,24 @@ impl Draft {
                 "triangle {triangle:?} has a corner that is none of the {count} points: count from 0"
             )));
         }
-        Ok(Self { surfels, triangles: cloud.triangles, estimated: Estimated::default() })
+        Ok(Self {
+            surfels,
+            triangles: cloud.triangles,
+            view: cloud.view,
+            viewpoints: cloud.viewpoints.filter(|viewpoints| viewpoints.scans.len() == count),
+            estimated: Estimated::default(),
+        })
+    }
+
+    /// Where a surfel was seen from.
+    pub fn view(&self, surfel: usize) -> View {
+        self.viewpoints.as_ref().map_or(self.view, |viewpoints| viewpoints.view(surfel))
+    }
+
+    /// Replaces the surfels by others, which have normals and radii.
+    pub fn replace(&mut self, surfels: Surfels) {
+        (self.surfels, self.triangles, self.viewpoints) = (surfels, Vec::new(), None);
+        self.sort_morton();
     }
 
     /// Sorts neighbours in space next to each other in memory.
@@ -81,6 +100,8 @@ impl Draft {
             self.triangles = self.triangles.iter().filter_map(moved).collect();
         }
         self.surfels.permute(order);
+        let kept = || order.iter().map(|&from| from as usize);
+        self.viewpoints = self.viewpoints.take().map(|viewpoints| viewpoints.gather(kept()));
     }
 
     /// Counts the present normals and radii as given.

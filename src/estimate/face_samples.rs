@@ -53,14 +53,12 @@ pub(super) fn replace(draft: &mut Draft, how: &Estimate) {
         clipped: surfels.clips.as_ref().map_or(0, |clips| clips.clips.len() as u64),
         ..draft.estimated
     };
-    draft.surfels = surfels;
-    draft.triangles = Vec::new();
-    draft.sort_morton();
+    draft.replace(surfels);
 }
 
 /// The areas of the triangles, if they are sampled.
 fn areas_of_sampled(draft: &Draft, how: &Estimate) -> Option<Vec<f64>> {
-    let Draft { surfels, triangles, estimated } = draft;
+    let Draft { surfels, triangles, estimated, .. } = draft;
     let bound = surfels.weights.is_some()
         || surfels.clips.is_some()
         || surfels.texture.is_some()

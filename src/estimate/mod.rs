@@ -226,7 +226,6 @@ impl Cloud {
     /// [`Error::Usage`](crate::Error::Usage) if what is missing cannot be estimated.
     pub fn into_surfels(self, how: &Estimate, progress: &dyn Progress) -> Result<(Surfels, Estimated)> {
         how.check()?;
-        let view = self.view;
         let mut draft = Draft::new(self, how)?;
         draft.sort_morton();
         if let Some(deviations) = how.outliers {
@@ -247,7 +246,7 @@ impl Cloud {
             .then(|| Sites::new(&draft.surfels.positions, progress))
             .transpose()?;
         if let Some(sites) = sites.as_ref().filter(|_| lacks_anything) {
-            neighbours::fill(&mut draft, sites, view, how, progress)?;
+            neighbours::fill(&mut draft, sites, how, progress)?;
         }
         let triangles = std::mem::take(&mut draft.triangles);
         let (mut surfels, mut estimated) = draft.finish(how)?;

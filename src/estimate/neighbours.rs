@@ -29,16 +29,10 @@ const LARGEST_PART: f32 = 0.002;
 const PIECE: usize = 1 << 12;
 
 /// Estimates missing normals and radii from the nearest points; `sites` are those of the surfels. Surfels are best in Morton order.
-pub(super) fn fill(
-    draft: &mut Draft,
-    sites: &Sites,
-    view: View,
-    how: &Estimate,
-    progress: &dyn Progress,
-) -> Result<()> {
+pub(super) fn fill(draft: &mut Draft, sites: &Sites, how: &Estimate, progress: &dyn Progress) -> Result<()> {
     let surfels = &draft.surfels;
     let survey = Survey::new(sites, wanted(surfels, sites), how, progress)?;
-    let (normals, unknown) = normals(surfels, sites, &survey, view, progress);
+    let (normals, unknown) = normals(draft, sites, &survey, progress);
     progress.check_cancelled()?;
     let Scatter { scattered, mut volume } = Scatter::new(&survey, &normals);
     if !how.billboards {
@@ -168,13 +162,8 @@ impl Survey {
 }
 
 /// The normal of every site, and whether its side is unknown.
-fn normals(
-    surfels: &Surfels,
-    sites: &Sites,
-    survey: &Survey,
-    view: View,
-    progress: &dyn Progress,
-) -> (Vec<Vec3>, Vec<bool>) {
+fn normals(draft: &Draft, sites: &Sites, survey: &Survey, progress: &dyn Progress) -> (Vec<Vec3>, Vec<bool>) {
+    let surfels = &draft.surfels;
     let (mut normals, mut known) = (vec![Vec3::ZERO; sites.len()], vec![false; sites.len()]);
     for (normal, &site) in surfels.normals.iter().zip(&sites.of_point) {
         if *normal != Vec3::ZERO {
@@ -186,9 +175,10 @@ fn normals(
         let site = site as usize;
         areas[site] = patch.reach * patch.reach;
         if !known[site] {
-            let to_view = match view {
+            let point = sites.point[site] as usize;
+            let to_view = match draft.view(point) {
                 View::Unknown => None,
-                View::From(eye) => Some(eye - surfels.positions[sites.point[site] as usize]),
+                View::From(eye) => Some(eye - surfels.positions[point]),
                 View::Towards(direction) => Some(direction),
             };
             let away = to_view.is_some_and(|to_view| patch.normal.dot(to_view) < 0.0);

@@ -1,7 +1,7 @@
 //! Point clouds as files store them: positions, and optional attributes.
 
 use super::morton::order;
-use super::{Clips, Colours, Curvature, Ellipse, Materials, Surfels, Texture, Weights};
+use super::{Clips, Colours, Curvature, Ellipse, Materials, Surfels, Texture, Viewpoints, Weights};
 use glam::{DVec3, Vec3};
 
 /// Points as a structure of arrays; every array that is present has one entry per point.
@@ -46,6 +46,8 @@ pub struct Cloud {
     pub tangents: Option<Vec<Vec3>>,
     /// Viewpoint of the scanner.
     pub view: View,
+    /// Viewpoints of several scans, in place of `view`.
+    pub viewpoints: Option<Viewpoints>,
 }
 
 /// Largest share of unused points in a mesh.
@@ -176,6 +178,7 @@ impl Cloud {
             point_indices: of(&self.point_indices, kept),
             tangents: of(&self.tangents, kept),
             view: self.view,
+            viewpoints: self.viewpoints.as_ref().map(|all| all.gather(kept.iter().map(|&i| i as usize))),
             ..Default::default()
         }
     }

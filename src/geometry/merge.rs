@@ -4,7 +4,7 @@ use super::join::{
     circles, common_origin, common_view, join, join_clips, join_colours, join_corners, join_materials,
     join_textures,
 };
-use super::{Cloud, Curvature, Model, Primitives, Surfels, View, Weights};
+use super::{Cloud, Curvature, Model, Primitives, Surfels, View, Viewpoints, Weights};
 use crate::error::{Error, Result};
 use glam::{DVec3, Vec3};
 
@@ -112,7 +112,8 @@ impl Primitives {
 
 impl Cloud {
     /// Concatenates all points of `parts`, as [`Surfels::merge`]. Points without normals, radii, tangents, scalars or indices have none in the
-    /// result; the view is unknown unless it is the same for all parts.
+    /// result; the view is unknown unless it is the same for all parts, which otherwise have
+    /// [`viewpoints`](Self::viewpoints).
     ///
     /// # Errors
     /// [`Error::Usage`] for more than 2³² − 1 points.
@@ -131,6 +132,7 @@ impl Cloud {
         let materials = join_materials(parts)?;
         Ok(Self {
             origin,
+            viewpoints: Viewpoints::join(parts),
             view: common_view(parts),
             triangles: join_corners(parts, |part| &mut part.triangles),
             ribbons: join_corners(parts, |part| &mut part.ribbons),
@@ -167,8 +169,11 @@ impl Cloud {
         if offset != DVec3::ZERO {
             let moved = |p: Vec3| (p.as_dvec3() + offset).as_vec3();
             self.positions.iter_mut().for_each(|p| *p = moved(*p));
-            if let View::From(eye) = &mut self.view {
-                *eye = moved(*eye);
+            let views = self.viewpoints.iter_mut().flat_map(|all| &mut all.views);
+            for view in views.chain([&mut self.view]) {
+                if let View::From(eye) = view {
+                    *eye = moved(*eye);
+                }
             }
         }
         self.origin = origin;

@@ -28,6 +28,7 @@ mod thin;
 #[cfg(any(feature = "estimate", feature = "io"))]
 mod usual_extent;
 mod valid;
+mod viewpoints;
 mod weights;
 
 pub use bounds::Bounds;
@@ -51,5 +52,6 @@ pub use texture::{MipMap, Texture};
 #[cfg(any(feature = "estimate", feature = "io"))]
 pub(crate) use usual_extent::usual_extent;
 pub(crate) use valid::is_unit;
+pub use viewpoints::Viewpoints;
 pub(crate) use weights::square_axis;
 pub use weights::{Corners, Weights, first_axis};

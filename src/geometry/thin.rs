@@ -53,6 +53,11 @@ impl Cloud {
                 groups.par_iter().map(|group| mean_finite(members(group).map(|i| scalar[i]))).collect()
             }),
             view: self.view,
+            // The first point stands for its voxel.
+            viewpoints: self
+                .viewpoints
+                .as_ref()
+                .map(|all| all.gather(groups.iter().flat_map(|group| members(group).take(1)))),
             ..Default::default()
         })
     }

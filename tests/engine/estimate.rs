@@ -2,10 +2,12 @@
 
 use crate::support::mesh;
 use crate::support::sampling::Random;
-use glam::Vec3;
+use glam::{DQuat, DVec3, Vec3};
+use rayon::prelude::*;
 use std::collections::HashMap;
+use std::path::Path;
 use surfel::estimate::{Estimate, Estimated, MeshSampling};
-use surfel::geometry::{Cloud, Surfels};
+use surfel::geometry::{Cloud, Surfels, View, Viewpoints};
 use surfel::verify::scenes::bumpy_sphere;
 
 fn estimate(cloud: Cloud) -> (Surfels, Estimated) {
@@ -20,14 +22,17 @@ struct Errors {
     p95: f32,
     /// Part of them on the true side.
     right: f64,
+    /// Number without a known side.
+    two_sided: u64,
 }
 
-/// Compares the normals estimated from bare points with true ones (0 where there is none).
-fn errors(positions: &[Vec3], truth: &[Vec3]) -> Errors {
+/// Compares the estimated normals of a cloud without any with true ones (0 where there is none).
+fn errors(cloud: Cloud, truth: &[Vec3]) -> Errors {
     let bits = |p: &Vec3| p.to_array().map(f32::to_bits);
-    let truth: HashMap<_, _> = positions.iter().map(bits).zip(truth).collect();
-    let (surfels, estimated) = estimate(Cloud { positions: positions.to_vec(), ..Default::default() });
-    assert_eq!(estimated.normals_from_neighbours, positions.len() as u64);
+    let truth: HashMap<_, _> = cloud.positions.iter().map(bits).zip(truth).collect();
+    let count = cloud.positions.len() as u64;
+    let (surfels, estimated) = estimate(cloud);
+    assert_eq!(estimated.normals_from_neighbours, count);
     let pairs = surfels.positions.iter().zip(&surfels.normals).map(|(p, n)| (*n, *truth[&bits(p)]));
     let cosines: Vec<f32> =
         pairs.filter(|(_, truth)| *truth != Vec3::ZERO).map(|(n, truth)| n.dot(truth)).collect();
@@ -35,7 +40,8 @@ fn errors(positions: &[Vec3], truth: &[Vec3]) -> Errors {
     let mut angles: Vec<f32> =
         cosines.iter().map(|cosine| cosine.abs().min(1.0).acos().to_degrees()).collect();
     angles.sort_unstable_by(f32::total_cmp);
-    Errors { median: angles[angles.len() / 2], p95: angles[angles.len() * 95 / 100], right }
+    let two_sided = estimated.two_sided;
+    Errors { median: angles[angles.len() / 2], p95: angles[angles.len() * 95 / 100], right, two_sided }
 }
 
 #[test]
@@ -48,7 +54,7 @@ fn normals_of_a_noisy_sphere_are_right() {
         .iter()
         .map(|p| *p + 0.1 * spacing * Vec3::from_array([0; 3].map(|_| random.normal() as f32)))
         .collect();
-    let errors = errors(&noisy, &truth.normals);
+    let errors = errors(bare(noisy), &truth.normals);
     println!("{errors:?}");
     assert!(errors.median <= 2.0 && errors.p95 <= 8.0 && errors.right >= 0.995, "{errors:?}");
 }
@@ -58,10 +64,53 @@ fn normals_of_scans_are_those_of_their_meshes() {
     for name in ["stanford/bunny/bun_zipper.ply", "classic/igea.ply", "classic/feline_50k.ply"] {
         let Some(path) = mesh::data(name) else { return };
         let mesh = mesh::read(&path);
-        let errors = errors(&mesh.positions, &mesh::normals(&mesh));
+        let errors = errors(bare(mesh.positions.clone()), &mesh::normals(&mesh));
         println!("{name}: {errors:?}");
         assert!(errors.median <= 5.0 && errors.p95 <= 20.0 && errors.right >= 0.995, "{name}: {errors:?}");
     }
+}
+
+/// Every fourth point of a range scan of the bunny, in the coordinates of the mesh, without its triangles. `pose` is a translation and the quaternion of the inverse
+/// rotation, and the scanner is a metre before the object.
+fn range_scan(path: &Path, pose: [f64; 7]) -> Cloud {
+    let [x, y, z, rotation @ ..] = pose;
+    let rotation = DQuat::from_array(rotation).normalize().conjugate();
+    let placed = |p: DVec3| (rotation * p + DVec3::new(x, y, z)).as_vec3();
+    let scan = mesh::read(path);
+    let at = |p: &Vec3| placed(scan.origin + p.as_dvec3());
+    let view = View::From(placed(DVec3::new(0.0, 0.1, 1.0)));
+    Cloud { view, ..bare(scan.positions.iter().step_by(4).map(at).collect()) }
+}
+
+#[test]
+fn normals_of_several_scans_are_those_of_the_mesh_that_was_made_of_them() {
+    let Some(path) = mesh::data("stanford/bunny/range/bun.conf") else { return };
+    let poses = std::fs::read_to_string(&path).unwrap();
+    let scans = poses.lines().filter_map(|line| {
+        let (name, pose) = line.strip_prefix("bmesh ")?.split_once(' ')?;
+        let numbers: Vec<f64> = pose.split_whitespace().map(|number| number.parse().unwrap()).collect();
+        // Not all of them are there.
+        let file = Some(path.with_file_name(name)).filter(|file| file.exists())?;
+        Some(range_scan(&file, numbers.try_into().unwrap()))
+    });
+    let cloud = Cloud::merge(scans.collect(), [0.5; 3]).unwrap();
+    let mesh = mesh::read(&mesh::data("stanford/bunny/bun_zipper.ply").unwrap());
+    let normals = mesh::normals(&mesh);
+    let nearest = |p: &Vec3| {
+        let all = mesh.positions.iter().map(|vertex| vertex.distance_squared(*p)).zip(&normals);
+        *all.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap().1
+    };
+    let truth: Vec<Vec3> = cloud
+        .positions
+        .par_iter()
+        .enumerate()
+        .map(|(i, p)| if i % 10 == 0 { nearest(p) } else { Vec3::ZERO })
+        .collect();
+    let blind = errors(Cloud { viewpoints: None, ..cloud.clone() }, &truth);
+    let seen = errors(cloud, &truth);
+    println!("{seen:?}, {blind:?} without scanners");
+    assert!(seen.two_sided == 0 && seen.right >= 0.997, "{seen:?}");
+    assert!(1.0 - seen.right < 0.5 * (1.0 - blind.right), "{seen:?} {blind:?}");
 }
 
 /// `across` × `along` points of a plane, `pitch` apart across, 1 along.
@@ -156,7 +205,6 @@ fn a_point_that_floats_above_a_surface_lies_parallel_to_it() {
 
 #[test]
 fn normals_point_to_where_points_were_seen_from() {
-    use surfel::geometry::View;
     let sheet = lines(50, 50, 1.0);
     for (view, up) in [
         (View::From(Vec3::new(25.0, 25.0, 40.0)), 1.0),
@@ -172,6 +220,32 @@ fn normals_point_to_where_points_were_seen_from() {
     let (surfels, counts) = estimate(bare(sheet));
     assert_eq!((counts.two_sided, surfels.two_sided), (2500, Some(vec![true; 2500])));
     assert_eq!(surfels.normals.iter().filter(|n| n.z > 0.0).count() % 2500, 0);
+}
+
+#[test]
+fn normals_point_to_the_scanners_of_their_points() {
+    // Both sides of a wall, point by point in turns, from a scanner on each; and a sheet above of which nothing is known.
+    let sheet = lines(50, 50, 1.0);
+    let at = |z: f32| sheet.iter().map(move |p| p.with_z(z));
+    let wall = at(0.0).zip(at(-5.0)).flat_map(|(front, back)| [front, back]);
+    let positions: Vec<Vec3> = wall.chain(at(30.0)).collect();
+    let eye = |z: f32| View::From(Vec3::new(25.0, 25.0, z));
+    let scans = (0..7500).map(|point| if point < 5000 { point % 2 } else { 2 }).collect();
+    let viewpoints = Some(Viewpoints { views: vec![eye(40.0), eye(-40.0), View::Unknown], scans });
+    let cloud = Cloud { viewpoints, ..bare(positions) };
+    for cloud in [cloud.clone(), Cloud::merge(vec![cloud.clone(), Cloud::default()], [0.5; 3]).unwrap()] {
+        let (surfels, counts) = estimate(cloud);
+        let two_sided = surfels.two_sided.unwrap();
+        assert_eq!(counts.two_sided, 2500);
+        for ((p, n), two_sided) in surfels.positions.iter().zip(&surfels.normals).zip(two_sided) {
+            assert!(two_sided == (p.z == 30.0) && n.z.abs() > 0.99, "{p}: {n}");
+            assert!(two_sided || n.z * (p.z + 2.5) > 0.0, "{p}: {n}");
+        }
+    }
+    // One point for each voxel: the scan of its first.
+    let thinned = cloud.thin(2.0).unwrap();
+    let (surfels, counts) = estimate(thinned);
+    assert!(counts.two_sided == surfels.normals.len() as u64 / 3, "{counts:?}");
 }
 
 #[test]

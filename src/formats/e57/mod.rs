@@ -5,7 +5,7 @@
 //! number; `scan` is the number of the scan, if there are several. Colours are scaled to the limits that the file states and are
 //! sRGB-encoded. Fields of extensions have their own names; those of the surface normal extension are `nx ny nz`.
 //!
-//! The scanner of a single scan is [`View::From`].
+//! The scanner of a single scan is [`View::From`](crate::geometry::View::From); those of several are [`Viewpoints`](crate::geometry::Viewpoints).
 //!
 //! Source: ASTM E2807-11.
 
@@ -27,7 +27,6 @@ use super::table::{Arrays, Layout, Points, fill};
 use super::{Inspected, Loaded, ReadOptions, Report, WantedAttributes, point_table};
 use crate::Progress;
 use crate::error::Cause;
-use crate::geometry::{Cloud, View};
 use e57::{E57Reader, PointCloud};
 use glam::DVec3;
 use packets::{Packets, Scratch};
@@ -125,8 +124,9 @@ fn load(
         up: Some(DVec3::Z),
         ..Report::of_points(Encoding::Compressed, report_of, layout, &points)
     };
-    let view = view(scans, points.cloud.origin);
-    Ok(Loaded { cloud: Cloud { view, ..points.cloud }, report, attributes })
+    let scanners: Vec<_> = scans.iter().map(|scan| (scan.records, position(scan))).collect();
+    points.set_scanners(&scanners);
+    Ok(Loaded { cloud: points.cloud, report, attributes })
 }
 
 /// Consecutive points of a scan, read by one thread.
@@ -203,15 +203,10 @@ fn refuse_lie(scans: &[PointCloud], size: u64) -> Parsed<()> {
     Ok(())
 }
 
-/// Where a single scan was taken from, if its pose or the order of its points tells.
-fn view(clouds: &[PointCloud], origin: DVec3) -> View {
-    match clouds {
-        [cloud] if cloud.transform.is_some() || scan::is_structured(cloud) => {
-            let eye = (scan::position(cloud) - origin).as_vec3();
-            if eye.is_finite() { View::From(eye) } else { View::Unknown }
-        }
-        _ => View::Unknown,
-    }
+/// Where a scan was taken from, if its pose or the order of its points tells.
+fn position(scan: &PointCloud) -> Option<DVec3> {
+    let is_known = scan.transform.is_some() || scan::is_structured(scan);
+    is_known.then(|| scan::position(scan))
 }
 
 /// Facts by name: coordinate system, scans with their numbers of points, scanners and positions.

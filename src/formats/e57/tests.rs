@@ -2,11 +2,12 @@
 
 use super::*;
 use crate::formats::declared::{Kind, Scalar};
-use crate::formats::read_bytes;
-use crate::geometry::Colours;
+use crate::formats::{Filter, read_bytes};
+use crate::geometry::{Colours, View};
 use ::e57::{E57Writer, Quaternion, Record, RecordDataType, RecordName, RecordValue, Transform, Translation};
 use glam::Vec3;
 use std::io::Cursor;
+use std::num::NonZeroU64;
 
 fn bytes() -> Vec<u8> {
     std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/formats/scans.e57")).unwrap()
@@ -32,7 +33,20 @@ fn scans_of_pye57_are_in_the_coordinates_of_the_file() {
         assert_eq!(colours[index][..3], [i * 4, 255 - i, i * 7 % 256].map(|code| code as u8));
         assert_eq!(cloud.scalar.as_ref().unwrap()[index], i as f64 / 64.0);
     }
-    assert_eq!(cloud.view, View::Unknown, "two scanners");
+    let viewpoints = cloud.viewpoints.unwrap();
+    let seen_from = |point: usize| match viewpoints.view(point) {
+        View::From(eye) => cloud.origin + eye.as_dvec3(),
+        view => panic!("{view:?}"),
+    };
+    let positions = [DVec3::new(0.0, 2.0, 3.0), DVec3::new(100.0, 2.0, 3.0)];
+    let expected = (0..114).map(|point| positions[point / 57]);
+    assert!(expected.enumerate().all(|(point, at)| seen_from(point).distance(at) < 1e-5));
+    assert_eq!((viewpoints.scans.len(), cloud.view), (114, View::Unknown));
+    // One point in seven of all scans: 0, 7, … 56 of the first, without an invalid one.
+    let filter = Filter { every: NonZeroU64::new(7), ..Default::default() };
+    let some = read_bytes("a.e57", &bytes(), &ReadOptions { filter, ..Default::default() }).unwrap().cloud;
+    let of_first = some.viewpoints.unwrap().scans.iter().filter(|scan| **scan == 0).count();
+    assert_eq!((of_first, some.positions.len()), (9, 17));
     let value =
         |name: &str| report.details.iter().find(|(own, _)| own == name).map(|(_, value)| value.as_str());
     assert_eq!((value("scans"), value("scan 1")), (Some("2"), Some("scan 1, 60 points, from [100, 2, 3]")));

@@ -6,7 +6,7 @@
 //! scanner's coordinates; 0 0 0 is a direction without a point and is left out. Colours are sRGB-encoded, to 255. The values of a point are
 //! properties of the element `point`; where a scan lacks one it is no number.
 //!
-//! The scanner of a single scan is [`View::From`]. Where its position is 0 0 0, the transformation tells it.
+//! The scanner of a single scan is [`View::From`](crate::geometry::View::From); those of several are [`Viewpoints`](crate::geometry::Viewpoints). Where its position is 0 0 0, the transformation tells it.
 
 mod header;
 mod scanner;
@@ -22,7 +22,6 @@ use super::text::rows::{self, Syntax};
 use super::{Inspected, Loaded, ReadOptions, Report};
 use crate::Progress;
 use crate::error::Cause;
-use crate::geometry::{Cloud, View};
 use glam::DVec3;
 use header::Scan;
 use scanner::Scanner;
@@ -120,8 +119,9 @@ fn load(
         up: Some(DVec3::Z),
         ..Report::of_points(Encoding::Ascii, element, &layout, &points)
     };
-    let view = view(scans, points.cloud.origin);
-    Ok(Loaded { cloud: Cloud { view, ..points.cloud }, report, attributes })
+    let scanners: Vec<_> = scans.iter().map(|scan| (scan.count(), Some(scan.position))).collect();
+    points.set_scanners(&scanners);
+    Ok(Loaded { cloud: points.cloud, report, attributes })
 }
 
 /// All values of a point, in the coordinates of the file; those that its scan lacks are not numbers.
@@ -132,13 +132,6 @@ fn values(scan: &Scan, numbers: &[f64]) -> [f64; VALUES.len()] {
     let at = scan.position_of(DVec3::new(x, y, z));
     let [intensity, red, green, blue] = others;
     [at.x, at.y, at.z, intensity, red, green, blue]
-}
-
-/// Where a single scan was taken from.
-fn view(scans: &[Scan], origin: DVec3) -> View {
-    let [scan] = scans else { return View::Unknown };
-    let eye = (scan.position - origin).as_vec3();
-    if eye.is_finite() { View::From(eye) } else { View::Unknown }
 }
 
 /// Facts by name: the scans with their grids and positions.

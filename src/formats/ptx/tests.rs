@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::formats::read_bytes;
-use crate::geometry::Colours;
+use crate::geometry::{Colours, View};
 
 /// A quarter turn about z, x to y, and a position.
 const TURNED: &str = "0 1 0 0\n-1 0 0 0\n0 0 1 0\n500000.25 4000000.5 100 1\n";
@@ -43,6 +43,12 @@ fn scans_are_in_the_coordinates_of_the_file_without_misses() {
             Some(Colours::Srgb8(vec![[255, 0, 7, 0], [0, 255, 8, 0], [1, 2, 3, 0], black]))
         );
         assert_eq!((cloud.view, report.up), (View::Unknown, Some(DVec3::Z)));
+        let viewpoints = cloud.viewpoints.unwrap();
+        assert_eq!(viewpoints.scans, [0, 0, 0, 1]);
+        assert_eq!(
+            viewpoints.view(3),
+            View::From((DVec3::new(500_001.0, 4_000_001.0, 99.0) - cloud.origin).as_vec3())
+        );
         let details: Vec<_> = report.details.iter().map(|(name, value)| format!("{name}: {value}")).collect();
         let expected = [
             "scans: 2",

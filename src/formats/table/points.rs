@@ -9,7 +9,7 @@ use crate::formats::attributes::{Attribute, Values};
 use crate::formats::declared::Element;
 use crate::formats::source::Parsed;
 use crate::formats::{Dropped, FilterCounts};
-use crate::geometry::{Clip, Clips, Cloud, Colours, Weights};
+use crate::geometry::{Clip, Clips, Cloud, Colours, View, Viewpoints, Weights};
 use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 
@@ -87,6 +87,43 @@ impl Points {
             coordinates,
             materials,
             attributes,
+        })
+    }
+
+    /// Sets where the points were seen from. The vertices of the file are those of scans of these numbers of points, one after the other, from
+    /// these positions in its coordinates.
+    pub fn set_scanners(&mut self, scans: &[(u64, Option<DVec3>)]) {
+        let view = |(_, position): &(u64, Option<DVec3>)| {
+            let eye = position.map(|position| (position - self.cloud.origin).as_vec3());
+            eye.filter(|eye| eye.is_finite()).map_or(View::Unknown, View::From)
+        };
+        let views: Vec<View> = scans.iter().map(view).collect();
+        if let [view] = views[..] {
+            self.cloud.view = view;
+            return;
+        }
+        let known = || views.iter().filter(|view| **view != View::Unknown);
+        // Scans that were merged have no poses left: all are the same.
+        if known().all(|view| Some(view) == known().next()) {
+            return;
+        }
+        let of_points = self.scans(scans.iter().map(|(count, _)| *count));
+        self.cloud.viewpoints = of_points.map(|scans| Viewpoints { views, scans });
+    }
+
+    /// The scan of each point; `None` if there are too many scans.
+    fn scans(&self, counts: impl Iterator<Item = u64>) -> Option<Vec<u16>> {
+        let mut end = 0;
+        let ends = counts.map(|count| {
+            end += count;
+            end
+        });
+        let ends: Vec<u64> = ends.collect();
+        u16::try_from(ends.len()).ok()?;
+        let scan = |read: usize| ends.partition_point(|end| *end <= read as u64 * self.step) as u16;
+        Some(match &self.map {
+            None => (0..self.cloud.len()).map(scan).collect(),
+            Some(map) => (0..map.len()).filter(|read| map[*read] != NOWHERE).map(scan).collect(),
         })
     }
 
