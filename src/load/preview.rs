@@ -90,3 +90,71 @@ impl Load<'_> {
         Estimate { outlines: false, outliers: None, sharp: None, ..self.options.estimate.clone() }
     }
 }
+
+#[cfg(all(test, feature = "las", feature = "scenes"))]
+mod tests {
+    use crate::Progress;
+    use crate::formats::{self, Contents};
+    use crate::load::{Listener, LoadOptions, Preview, load};
+    use crate::verify::scenes;
+    use std::path::Path;
+    use std::sync::Mutex;
+
+    /// What is heard, in its order.
+    #[derive(Default)]
+    struct Heard(Mutex<Vec<String>>);
+
+    impl Heard {
+        fn add(&self, what: String) {
+            let mut all = self.0.lock().unwrap();
+            if all.last() != Some(&what) {
+                all.push(what);
+            }
+        }
+    }
+
+    impl Progress for Heard {
+        fn at(&self, stage: &'static str, _: u64, _: u64) {
+            self.add(stage.into());
+        }
+
+        fn is_cancelled(&self) -> bool {
+            false
+        }
+    }
+
+    impl Listener for Heard {
+        fn wants_preview(&self) -> bool {
+            true
+        }
+
+        fn preview(&self, Preview { model, .. }: Preview) {
+            self.add(format!("preview of {}", model.surfels.len()));
+        }
+    }
+
+    /// What is heard while a file is loaded.
+    fn heard(path: &Path) -> Vec<String> {
+        let heard = Heard::default();
+        let loaded = load(&[path], &LoadOptions::default(), &heard).unwrap();
+        assert_eq!((loaded.model.surfels.len(), loaded.dropped.total()), (150_000, 0));
+        heard.0.into_inner().unwrap()
+    }
+
+    #[test]
+    fn coarse_levels_are_a_preview_before_a_file_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let surfels = scenes::open("scene:sphere?points=150000").unwrap();
+        let contents = Contents { parts: (&surfels).into(), inputs: &[], recoloured: false };
+        let all = ["a.laz", "a.copc.laz"].map(|name| {
+            let path = folder.path().join(name);
+            formats::write(&path, &contents, &()).unwrap();
+            heard(&path)
+        });
+        let [plain, octree] = all;
+        assert_eq!(plain[..2], ["reading", "preview of 20000"], "{plain:?}");
+        assert_eq!(octree[..2], ["preview of 20000", "reading"], "{octree:?}");
+        let previews = octree.iter().filter(|what| what.starts_with("preview"));
+        assert_eq!(previews.count(), 1, "{octree:?}");
+    }
+}
