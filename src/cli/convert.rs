@@ -6,9 +6,9 @@ use super::{progress, summary, vulkan};
 use std::path::Path;
 use std::sync::Arc;
 use surfel::capture::{Captured, capture};
-use surfel::formats::{self, Contents};
+use surfel::formats::{self, Contents, DiscProperties};
 use surfel::geometry::{Model, Surfels};
-use surfel::load::{LoadOptions, load};
+use surfel::load::{LoadOptions, LoadedModel, load};
 use surfel::settings::methods::object_ewa;
 use surfel::vk::Device;
 use surfel::{Error, Progress, Result, thousands};
@@ -40,14 +40,32 @@ pub fn run(args: &Convert) -> Result<()> {
         capture_weights(&mut loaded.model.surfels, views, &Device::open(&device)?, &*bars, args.quiet)?;
     }
     let recoloured = args.colours.by().is_some();
-    let contents = Contents { parts: (&loaded.model).into(), inputs: &loaded.inputs, recoloured };
+    let contents = Contents {
+        parts: (&loaded.model).into(),
+        inputs: &loaded.inputs,
+        recoloured,
+        discs: written_properties(args, &loaded),
+    };
     let written = formats::write(out, &contents, &*bars)?;
     written.left_out.iter().for_each(|what| log::warn!("{}: left out: {what}", out.display()));
     if !args.quiet {
         written.notes.iter().for_each(|note| progress::say(&format!("{}: {note}", out.display())));
-        progress::say(&format!("{}: {}", out.display(), summary::parts(&loaded.model)));
+        let parts = summary::parts(&loaded.model);
+        let parts = if args.bare { parts.replace("surfels", "points") } else { parts };
+        progress::say(&format!("{}: {parts}", out.display()));
     }
     Ok(())
+}
+
+/// Which properties of discs are written: with --bare those that an input has. Radii are those of lines, too.
+fn written_properties(args: &Convert, LoadedModel { model, estimated, .. }: &LoadedModel) -> DiscProperties {
+    if !args.bare || estimated.radii_given > 0 || !model.primitives.is_empty() {
+        DiscProperties::All
+    } else if estimated.normals_given > 0 {
+        DiscProperties::Normals
+    } else {
+        DiscProperties::None
+    }
 }
 
 /// Fails if the model has lines or triangles, which have no normalization weights.

@@ -1,5 +1,6 @@
 //! Properties of discs in files, by which they are read back.
 
+use super::DiscProperties;
 use super::declared::Scalar;
 use super::table::columns::{CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, WEIGHT_NAME};
 use crate::geometry::{ClipLine, Surfels};
@@ -67,8 +68,13 @@ pub fn scalar(property: usize) -> Scalar {
     if matches!(property, FLAG | CONCAVE) { Scalar::U8 } else { Scalar::F32 }
 }
 
-/// The properties that the discs have.
-pub fn present(surfels: &Surfels) -> impl Iterator<Item = usize> {
+/// The properties that the discs have, of those that are written.
+pub fn present(surfels: &Surfels, written: DiscProperties) -> impl Iterator<Item = usize> {
+    let end = match written {
+        DiscProperties::All => COUNT,
+        DiscProperties::Normals => RADIUS,
+        DiscProperties::None => 0,
+    };
     let weights = surfels.weights.as_ref();
     let has = [
         (0..FIRST_AXIS, true),
@@ -78,7 +84,8 @@ pub fn present(surfels: &Surfels) -> impl Iterator<Item = usize> {
         (WEIGHT..WEIGHT + 1, weights.is_some()),
         (WEIGHT + 1..COUNT, weights.is_some_and(|weights| !weights.corners.is_empty())),
     ];
-    has.into_iter().filter(|(_, has)| *has).flat_map(|(properties, _)| properties)
+    let present = has.into_iter().filter(|(_, has)| *has).flat_map(|(properties, _)| properties);
+    present.take_while(move |property| *property < end)
 }
 
 /// All properties of disc `i`; 0 for those that it does not have.

@@ -57,7 +57,8 @@ pub use reader::{Inspected, Loaded, ReadOptions, extensions, inspect, levels, re
 pub use report::{Dropped, Faces, Lines, Report};
 pub use survey::Survey;
 pub use writer::{
-    Contents, PointSource, Written, check_writable, keeps_attributes, writable_extensions, write,
+    Contents, DiscProperties, PointSource, Written, check_writable, keeps_attributes, writable_extensions,
+    write,
 };
 
 use crate::error::{Error, Result};

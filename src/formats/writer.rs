@@ -37,6 +37,20 @@ pub struct Contents<'a> {
     pub inputs: &'a [PointSource],
     /// Whether the model's colours replace those of the inputs.
     pub recoloured: bool,
+    /// Which properties of the discs are written.
+    pub discs: DiscProperties,
+}
+
+/// Which properties of discs a file has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DiscProperties {
+    /// All that are present.
+    #[default]
+    All,
+    /// Normals alone.
+    Normals,
+    /// None: the file has points.
+    None,
 }
 
 /// What an input has beyond the model, which formats of points keep.

@@ -34,6 +34,41 @@ fn inputs_become_one_binary_file_that_renders_the_same() {
 }
 
 #[test]
+fn bare_files_have_the_normals_and_radii_of_the_inputs_alone() {
+    let program = Program::new();
+    let rows = |with: &str| (0..50).map(|i| format!("{}.25 {} 7{with}\n", i % 7, i / 7)).collect::<String>();
+    let ply = |properties: &str, with: &str| {
+        let names: String = properties.split(' ').map(|name| format!("property float {name}\n")).collect();
+        format!("ply\nformat ascii 1.0\nelement vertex 50\n{names}end_header\n{}", rows(with))
+    };
+    program.write("points.ply", ply("x y z quality", " 3"));
+    program.write("normals.ply", ply("x y z nx ny nz", " 0 1 0"));
+    program.write("discs.ply", ply("x y z nx ny nz radius", " 0 1 0 0.5"));
+    let properties = |name: &str| {
+        let text = info(&program, name);
+        let has = |names: [&str; 2]| text.lines().any(|line| names.iter().any(|name| line.trim() == *name));
+        let normals = has(["float nx", "float NormalX"]) || has(["float normalX", "float nor:normalX"]);
+        (normals, has(["float radius", ""]), text.contains("points: 50\n"))
+    };
+    for (input, [normals, radii]) in
+        [("points", [false; 2]), ("normals", [true, false]), ("discs", [true, true])]
+    {
+        for extension in ["ply", "las", "laz", "copc.laz", "e57"] {
+            let out = format!("{input}_bare.{extension}");
+            let run = program.run(&format!("convert {input}.ply -o {out} --bare"));
+            assert!(run.err.contains(&format!("{out}: 50 points")), "{}", run.err);
+            // E57 has no radii.
+            let expected = (normals, radii && extension != "e57", true);
+            assert_eq!(properties(&out), expected, "{out}: {}", info(&program, &out));
+        }
+    }
+    // They are estimated when they are rendered.
+    let text = info(&program, "points_bare.copc.laz");
+    assert!(text.contains("normals: 50 from neighbours") && text.contains("quality"), "{text}");
+    assert!(program.run("convert points.ply -o out.las --bare --sharp 30").error(2).contains("--bare"));
+}
+
+#[test]
 fn far_coordinates_are_kept() {
     let program = Program::new();
     let far = surfels(&["500000.001 4600000.002 100 0 0 1 0.5", "500001 4600001 101 0 0 1 0.5"]);

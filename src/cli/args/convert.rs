@@ -44,6 +44,9 @@ pub struct Convert {
     /// The device that captures weights
     #[command(flatten)]
     pub device: DeviceArgs,
+    /// Writes the points with the normals and radii that the inputs have, and estimates none
+    #[arg(long, conflicts_with_all = ["sharp", "weights", "lines", "radius", "elliptical"])]
+    pub bare: bool,
     /// What points are coloured by
     #[command(flatten)]
     pub colours: Colours,
@@ -66,7 +69,7 @@ fn thickest(text: &str) -> Result<ToLines, String> {
 impl Convert {
     /// The options of the estimation.
     pub fn estimate(&self) -> Estimate {
-        Estimate { sharp: self.sharp.map(f32::to_radians), ..self.points.estimate() }
+        Estimate { sharp: self.sharp.map(f32::to_radians), bare: self.bare, ..self.points.estimate() }
     }
 }
 

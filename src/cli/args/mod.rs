@@ -53,7 +53,7 @@ pub enum Command {
     View(Box<View>),
     /// Prints the contents of a file or scene, and what is estimated of it
     Info(Info),
-    /// Estimates surfels from points and writes them to a PLY file
+    /// Estimates surfels from points, and writes them, or the points alone, to a file
     Convert(Box<Convert>),
     /// Compares picture A with the ground truth B: colours, silhouette, normals, depths
     #[cfg(feature = "metrics")]

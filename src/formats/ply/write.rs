@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::formats::declared::Scalar;
 use crate::formats::reader::Reader;
 use crate::formats::table::columns::{MATERIAL_NAME, TANGENT_NAMES};
-use crate::formats::writer::{Contents, Writer as FileWriter, Written};
+use crate::formats::writer::{Contents, DiscProperties, Writer as FileWriter, Written};
 use crate::formats::{atomic, disc};
 use crate::geometry::{Colours, Materials, Parts, Primitives};
 use glam::DVec3;
@@ -37,13 +37,17 @@ use std::path::Path;
 /// [`Error::Usage`] if the arrays differ in length, an index of a vertex is invalid, or there are more than 2³² − 1 vertices; [`Error::Io`]
 /// if the file cannot be written.
 pub fn write<'a>(path: &Path, parts: impl Into<Parts<'a>>) -> Result<()> {
-    let parts = parts.into();
+    write_properties(path, parts.into(), DiscProperties::All)
+}
+
+/// Writes some properties of the discs.
+fn write_properties(path: &Path, parts: Parts<'_>, discs: DiscProperties) -> Result<()> {
     parts.check()?;
     let count = parts.surfels.len() + parts.primitives.map_or(0, Primitives::len);
     if u32::try_from(count).is_err() {
         return Err(Error::Usage(format!("{count} surfels and vertices in one file: give at most 2³² − 1")));
     }
-    let contents = FileContents::new(parts)?;
+    let contents = FileContents::new(parts, discs)?;
     atomic::write(path, |mut out| records(&mut out, &contents))
 }
 
@@ -55,7 +59,7 @@ impl FileWriter for super::Ply {
     fn write(&self, path: &Path, contents: &Contents<'_>, progress: &dyn Progress) -> Result<Written> {
         let count = contents.parts.surfels.len() as u64;
         progress.at("writing", 0, count);
-        write(path, contents.parts)?;
+        write_properties(path, contents.parts, contents.discs)?;
         progress.at("writing", count, count);
         let mut written = Written::default();
         let skipped = contents.inputs.iter().flat_map(|input| input.skipped.iter().cloned()).collect();
@@ -67,6 +71,8 @@ impl FileWriter for super::Ply {
 /// The contents of a file.
 pub(super) struct FileContents<'a> {
     pub parts: Parts<'a>,
+    /// Which properties of discs it has.
+    discs: DiscProperties,
     /// The used vertices of lines and triangles.
     pub vertices: Vec<u32>,
     /// Index of each vertex in the file.
@@ -81,7 +87,7 @@ pub(super) struct FileContents<'a> {
 }
 
 impl<'a> FileContents<'a> {
-    fn new(parts: Parts<'a>) -> Result<Self> {
+    fn new(parts: Parts<'a>, discs: DiscProperties) -> Result<Self> {
         let none = Primitives::default();
         let primitives = parts.primitives.unwrap_or(&none);
         let (mut tangent, mut normal) = (vec![false; primitives.len()], vec![false; primitives.len()]);
@@ -103,7 +109,7 @@ impl<'a> FileContents<'a> {
             (primitives.materials.as_ref(), primitives.len()),
         ])?;
         let baked = [of_surfels, of_vertices];
-        Ok(Self { parts, vertices, place, tangent, normal, baked, materials })
+        Ok(Self { parts, discs, vertices, place, tangent, normal, baked, materials })
     }
 
     /// Number of vertices in the file.
@@ -188,7 +194,7 @@ fn vertex(contents: &FileContents) -> ElementDef {
     let mut add = |names: &[&str], scalar: ScalarType| add(&mut vertex, names, scalar);
     let near = contents.parts.origin() == DVec3::ZERO;
     add(&["x", "y", "z"], if near { ScalarType::Float } else { ScalarType::Double });
-    for property in disc::present(surfels) {
+    for property in disc::present(surfels, contents.discs) {
         let is_flag = disc::scalar(property) == Scalar::U8;
         add(&[disc::NAMES[property]], if is_flag { ScalarType::UChar } else { ScalarType::Float });
     }

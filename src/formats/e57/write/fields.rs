@@ -1,5 +1,6 @@
 //! Fields of the points of a written scan.
 
+use crate::formats::DiscProperties;
 use crate::formats::declared::Scalar;
 use crate::formats::e57::ScanSurvey;
 use crate::formats::e57::scan::rotation;
@@ -68,9 +69,10 @@ impl<'a> Fields<'a> {
         let single = || RecordDataType::Single { min: None, max: None };
         let normals = ["normalX", "normalY", "normalZ"]
             .map(|name| RecordName::Unknown { namespace: String::new(), name: name.into() });
-        all.extend(
-            normals.into_iter().enumerate().map(|(axis, name)| (record(name, single()), Field::Normal(axis))),
-        );
+        if table.contents.discs != DiscProperties::None {
+            let normals = normals.into_iter().enumerate();
+            all.extend(normals.map(|(axis, name)| (record(name, single()), Field::Normal(axis))));
+        }
         let mut fields = Self { all, pose, to_local };
         fields.add_colours(table, has_byte_colours);
         fields.add_attributes(table, rows, written);

@@ -64,7 +64,8 @@ impl Writer for E57 {
 fn leave_out(table: &PointTable, written: &mut Written) {
     let has_field = |name: &str| name == SCAN || Fields::NAMES.contains(&name);
     let columns = table.columns.iter().map(|column| column.name.clone()).filter(|name| !has_field(name));
-    let discs = disc::present(table.surfels()).filter(|property| *property >= disc::RADIUS);
+    let discs =
+        disc::present(table.surfels(), table.contents.discs).filter(|property| *property >= disc::RADIUS);
     let discs = discs.map(|property| disc::NAMES[property].to_owned());
     written.leave_out(columns.chain(discs).collect(), "E57 has no such fields; LAS and LAZ files keep them");
 }

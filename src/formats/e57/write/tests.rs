@@ -1,7 +1,9 @@
 //! Scans that are written and read again.
 
 use crate::formats::round_trip::{all, reversed};
-use crate::formats::{Attribute, Contents, PointSource, ReadOptions, Written, read, read_bytes, write};
+use crate::formats::{
+    Attribute, Contents, DiscProperties, PointSource, ReadOptions, Written, read, read_bytes, write,
+};
 use crate::geometry::{Colours, Ellipse, Surfels, View};
 use glam::Vec3;
 use std::collections::BTreeSet;
@@ -10,7 +12,12 @@ use tempfile::TempDir;
 
 fn written(folder: &TempDir, surfels: &Surfels, inputs: &[PointSource]) -> (PathBuf, Written) {
     let path = folder.path().join("a.e57");
-    let written = write(&path, &Contents { parts: surfels.into(), inputs, recoloured: false }, &()).unwrap();
+    let written = write(
+        &path,
+        &Contents { parts: surfels.into(), inputs, recoloured: false, discs: DiscProperties::All },
+        &(),
+    )
+    .unwrap();
     (path, written)
 }
 
@@ -120,7 +127,12 @@ fn texts_cannot_end_their_section() {
     assert_eq!(super::text("a ]]> b\u{1}\n"), "a ]] > b\n");
     let error = write(
         Path::new("/nowhere/a.e57"),
-        &Contents { parts: (&Surfels::default()).into(), inputs: &[], recoloured: false },
+        &Contents {
+            parts: (&Surfels::default()).into(),
+            inputs: &[],
+            recoloured: false,
+            discs: DiscProperties::All,
+        },
         &(),
     );
     assert!(error.unwrap_err().to_string().contains("/nowhere does not exist: create it"));

@@ -211,7 +211,7 @@ fn extras(
     standard: &[Field],
     written: &mut Written,
 ) -> Vec<(String, Scalar, &'static str)> {
-    let discs: Vec<_> = disc::present(table.surfels())
+    let discs: Vec<_> = disc::present(table.surfels(), table.contents.discs)
         .map(|property| (disc_name(property).to_owned(), disc::scalar(property), meaning(property)))
         .collect();
     let is_standard = |name: &str| standard.iter().any(|field| field.name == *name);

@@ -3,7 +3,8 @@
 use crate::error::{Error, Result};
 use crate::formats::round_trip::{all, reversed};
 use crate::formats::{
-    Attribute, Contents, Loaded, PointSource, ReadOptions, Values, Written, read, read_bytes, write,
+    Attribute, Contents, DiscProperties, Loaded, PointSource, ReadOptions, Values, Written, read, read_bytes,
+    write,
 };
 use crate::geometry::{
     Clip, ClipLine, Clips, Cloud, Colours, Ellipse, Materials, Model, Primitives, Surfels, Weights,
@@ -32,7 +33,12 @@ fn open(path: &Path) -> File {
 /// Writes a file in a temporary folder.
 fn written(folder: &TempDir, name: &str, from: &File) -> (PathBuf, Written) {
     let path = folder.path().join(name);
-    let contents = Contents { parts: (&from.surfels).into(), inputs: &from.inputs, recoloured: false };
+    let contents = Contents {
+        parts: (&from.surfels).into(),
+        inputs: &from.inputs,
+        recoloured: false,
+        discs: DiscProperties::All,
+    };
     let written = write(&path, &contents, &()).unwrap();
     (path, written)
 }
@@ -294,7 +300,11 @@ fn what_is_no_point_is_named_or_refused() {
     let mut model = Model { surfels, primitives };
     let path = folder.path().join("a.laz");
     let save = |model: &Model| -> Result<Written> {
-        write(&path, &Contents { parts: model.into(), inputs: &[], recoloured: false }, &())
+        write(
+            &path,
+            &Contents { parts: model.into(), inputs: &[], recoloured: false, discs: DiscProperties::All },
+            &(),
+        )
     };
     assert_eq!(
         save(&model).unwrap().left_out,
@@ -313,7 +323,12 @@ fn what_is_no_point_is_named_or_refused() {
 fn errors_name_the_file() {
     let file = ply("x y z", &["0 0 0"]);
     for name in ["/nowhere/a.laz", "/nowhere/a.las"] {
-        let contents = Contents { parts: (&file.surfels).into(), inputs: &file.inputs, recoloured: false };
+        let contents = Contents {
+            parts: (&file.surfels).into(),
+            inputs: &file.inputs,
+            recoloured: false,
+            discs: DiscProperties::All,
+        };
         let error = write(Path::new(name), &contents, &()).unwrap_err();
         assert!(matches!(error, Error::Io { .. }), "{error}");
         assert!(error.to_string().contains("/nowhere does not exist: create it"), "{error}");
