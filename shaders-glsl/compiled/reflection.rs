@@ -2087,23 +2087,25 @@ pub mod layout {
         /// Byte 16.
         pub key_far: f32,
         /// Byte 20.
-        pub key_gain: f32,
+        pub key_near: f32,
         /// Byte 24.
-        pub key_reach: f32,
+        pub key_gain: f32,
         /// Byte 28.
-        pub cutoff: f32,
+        pub key_reach: f32,
         /// Byte 32.
-        pub epsilon: f32,
+        pub cutoff: f32,
         /// Byte 36.
-        pub visibility_lowpass: f32,
+        pub epsilon: f32,
         /// Byte 40.
-        pub attribute_lowpass: f32,
+        pub visibility_lowpass: f32,
         /// Byte 44.
-        pub kernel_a: f32,
+        pub attribute_lowpass: f32,
         /// Byte 48.
+        pub kernel_a: f32,
+        /// Byte 52.
         pub kernel_n: f32,
         /// Unused: the layout leaves a gap here.
-        pub _pad12: [u8; 12],
+        pub _pad13: [u8; 8],
         /// Byte 64.
         pub background: [f32; 4],
         /// Byte 80.
@@ -2125,24 +2127,25 @@ pub mod layout {
         /// Byte 184.
         pub pixel_width: f32,
         /// Unused: the layout leaves a gap here.
-        pub _pad22: [u8; 4],
+        pub _pad23: [u8; 4],
         /// Byte 192.
         pub origin: [f32; 2],
         /// Unused: the layout leaves a gap here.
-        pub _pad23: [u8; 8],
+        pub _pad24: [u8; 8],
     }
     const _: () = assert!(std::mem::offset_of!(Frame, viewport) == 0);
     const _: () = assert!(std::mem::offset_of!(Frame, near) == 8);
     const _: () = assert!(std::mem::offset_of!(Frame, key_slope) == 12);
     const _: () = assert!(std::mem::offset_of!(Frame, key_far) == 16);
-    const _: () = assert!(std::mem::offset_of!(Frame, key_gain) == 20);
-    const _: () = assert!(std::mem::offset_of!(Frame, key_reach) == 24);
-    const _: () = assert!(std::mem::offset_of!(Frame, cutoff) == 28);
-    const _: () = assert!(std::mem::offset_of!(Frame, epsilon) == 32);
-    const _: () = assert!(std::mem::offset_of!(Frame, visibility_lowpass) == 36);
-    const _: () = assert!(std::mem::offset_of!(Frame, attribute_lowpass) == 40);
-    const _: () = assert!(std::mem::offset_of!(Frame, kernel_a) == 44);
-    const _: () = assert!(std::mem::offset_of!(Frame, kernel_n) == 48);
+    const _: () = assert!(std::mem::offset_of!(Frame, key_near) == 20);
+    const _: () = assert!(std::mem::offset_of!(Frame, key_gain) == 24);
+    const _: () = assert!(std::mem::offset_of!(Frame, key_reach) == 28);
+    const _: () = assert!(std::mem::offset_of!(Frame, cutoff) == 32);
+    const _: () = assert!(std::mem::offset_of!(Frame, epsilon) == 36);
+    const _: () = assert!(std::mem::offset_of!(Frame, visibility_lowpass) == 40);
+    const _: () = assert!(std::mem::offset_of!(Frame, attribute_lowpass) == 44);
+    const _: () = assert!(std::mem::offset_of!(Frame, kernel_a) == 48);
+    const _: () = assert!(std::mem::offset_of!(Frame, kernel_n) == 52);
     const _: () = assert!(std::mem::offset_of!(Frame, background) == 64);
     const _: () = assert!(std::mem::offset_of!(Frame, albedo) == 80);
     const _: () = assert!(std::mem::offset_of!(Frame, radiance) == 96);
@@ -2503,8 +2506,8 @@ pub mod layout {
         pub level_spacing: f32,
         /// Byte 424.
         pub level_reach: f32,
-        /// Unused: the layout leaves a gap here.
-        pub _pad18: [u8; 4],
+        /// Byte 428.
+        pub distance_offset: f32,
         /// Byte 432.
         pub level_starts: [[u32; 4]; 3],
     }
@@ -2526,6 +2529,7 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(View, first_id) == 416);
     const _: () = assert!(std::mem::offset_of!(View, level_spacing) == 420);
     const _: () = assert!(std::mem::offset_of!(View, level_reach) == 424);
+    const _: () = assert!(std::mem::offset_of!(View, distance_offset) == 428);
     const _: () = assert!(std::mem::offset_of!(View, level_starts) == 432);
     const _: () = assert!(std::mem::size_of::<View>() == 480);
 

@@ -1,6 +1,7 @@
 // Frame uniforms: settings, viewport and camera; src/frame/uniforms.rs writes them once per frame. World space is relative to the scene's
 // origin here; in passes over an instance it is the scene's own space and unit. κ, the depth key, is near / z in perspective and linear in
-// z otherwise: 1 at the near plane, decreasing with distance, affine on the screen for every plane.
+// z otherwise: 1 at the near plane, decreasing with distance, affine on the screen for every plane. Parallel rays: distances are counted from
+// a plane near the scene, and κ is 1 and ½ at planes near it, so that float32 resolves depths relative to the scene.
 
 layout(constant_id = 0) const bool PERSPECTIVE = true;
 
@@ -9,7 +10,8 @@ layout(set = 0, binding = 0, std140) uniform Frame {
     vec2 viewport;            // px
     float near;
     float key_slope;          // orthographic: −dκ/dz
-    float key_far;            // κ of the far plane
+    float key_far;            // κ of the camera's far plane
+    float key_near;           // κ of the camera's near plane: 1 in perspective
     float key_gain;           // scales κ before summation, so that half floats hold it
     float key_reach;          // how much nearer than its disc a fragment's depth may be: a factor of κ in perspective, else added to it
     float cutoff;             // F, σ
@@ -35,18 +37,23 @@ layout(set = 0, binding = 0, std140) uniform Frame {
 // A copy in registers: lavapipe loads uniforms lane by lane inside loops.
 struct FrameValues {
     vec2 viewport;
-    float near, key_far, key_gain, key_reach, cutoff, visibility_lowpass, attribute_lowpass, kernel_a, kernel_n;
+    float near, key_far, key_near, key_gain, key_reach, cutoff, visibility_lowpass, attribute_lowpass, kernel_a, kernel_n;
     vec4 background, albedo, radiance[4];
     float ambient, specular, shininess;
 } frame_values;
 
 void load_frame() {
-    frame_values = FrameValues(frame.viewport, frame.near, frame.key_far, frame.key_gain, frame.key_reach, frame.cutoff,
+    frame_values = FrameValues(frame.viewport, frame.near, frame.key_far, frame.key_near, frame.key_gain, frame.key_reach, frame.cutoff,
                                frame.visibility_lowpass, frame.attribute_lowpass, frame.kernel_a, frame.kernel_n,
                                frame.background, frame.albedo, frame.radiance, frame.ambient, frame.specular, frame.shininess);
 }
 #define frame frame_values
 #endif
+
+// κ of the nearest fragments.
+float nearest_key() {
+    return PERSPECTIVE ? 1.0 : frame.key_near;
+}
 
 
 // Camera in the axes and unit of a scene.
@@ -69,6 +76,7 @@ struct View {
     uint first_id;     // id of the instance's first point
     float level_spacing; // side of the cells of the finest level of detail, in the scene's unit
     float level_reach;   // distance at which a cell of side 1 suffices, in sides; with parallel rays, the side that just suffices is 1 / this
+    float distance_offset; // parallel rays: distance of the plane that distances are counted from, world units
     uvec4 level_starts[3]; // first surfel of each level, ~0 beyond the last one
 };
 

@@ -285,7 +285,7 @@ bool splat_fragment(Ellipse ellipse, vec2 pixel, out vec2 m, out float key, out 
     rank = 1.0;
     if (has_clip(ellipse.clip)) rank = clip_rank(clip_distance(screen_clip(ellipse.clip), d));
     if (CURVATURES) inside = inside && key >= ellipse.least_key;
-    return inside && rank > 0.0 && key > frame.key_far && key <= 1.0;
+    return inside && rank > 0.0 && key > frame.key_far && key <= nearest_key();
 }
 
 #if !defined(FRAGMENT) && !defined(TILE_PASS)

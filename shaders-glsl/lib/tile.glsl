@@ -206,7 +206,7 @@ bool tile_fragment(TileSplat splat, vec2 d, out vec2 m, out float key, out float
     rank = 1.0;
     if (CLIPS) rank = clip_rank(clip_distance(splat, d));
     if (CURVATURES) inside = inside && key >= splat.least_key;
-    return inside && rank > 0.0 && key > frame.key_far && key <= 1.0;
+    return inside && rank > 0.0 && key > frame.key_far && key <= nearest_key();
 }
 
 // lavapipe stops all loops of an invocation after 65,535 iterations in total (LP_MAX_TGSI_LOOP_ITERATIONS), which would leave holes: each

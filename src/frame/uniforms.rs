@@ -44,15 +44,19 @@ impl Uniforms {
             _ => None,
         };
         let origin = single_origin.unwrap_or_default();
-        let (rays, projection) = camera_rays(camera, size)?;
+        let sure = scenes.iter().map(Placed::sure_bounds).reduce(|all, bounds| Some(all?.with(&bounds?)));
+        let depths = DepthRange::new(camera, sure.flatten().as_ref())?;
+        let (rays, projection) = camera_rays(camera, size, &depths, 1.0)?;
         let mut view = view(&rays, &projection, origin);
+        view.distance_offset = depths.offset as f32;
         apply_placement(&mut view, settings, &Similarity::IDENTITY);
         let table = scenes.first().and_then(|placed| placed.scene.level_table());
         apply_levels(&mut view, settings, table);
-        let frame = frame(settings, size, (&rays, &projection), bounds.as_ref());
+        let frame = frame(settings, size, (&rays, &projection, depths.clip), bounds.as_ref());
         let instanced = if single_origin.is_some() { &[] } else { scenes };
         let instances = instanced.iter().zip(first_ids(scenes));
-        let instances = instances.map(|(placed, first)| instance_view(camera, settings, size, placed, first));
+        let instances =
+            instances.map(|(placed, first)| instance_view((camera, &depths), settings, size, placed, first));
         Ok(Self { frame, view, instances: instances.collect::<Result<_>>()? })
     }
 
@@ -67,7 +71,7 @@ impl Uniforms {
 
 /// The view of a placed scene; `first` is the id of its first point in the frame.
 fn instance_view(
-    camera: &Camera,
+    (camera, depths): (&Camera, &DepthRange),
     settings: &Settings,
     size: [u32; 2],
     placed: &Placed<'_>,
@@ -75,7 +79,7 @@ fn instance_view(
 ) -> Result<View> {
     let placement = placed.placement.unwrap_or(Similarity::IDENTITY);
     let camera = placed.placement.map_or(*camera, |placement| placement.seen_by(camera));
-    let (rays, projection) = camera_rays(&camera, size)?;
+    let (rays, projection) = camera_rays(&camera, size, depths, placement.scale())?;
     let mut view = view(&rays, &projection, placed.scene.origin());
     view.first_id = first;
     apply_placement(&mut view, settings, &placement);
@@ -136,7 +140,7 @@ fn view(rays: &CameraRays, projection: &Projection, origin: DVec3) -> View {
 fn frame(
     settings: &Settings,
     size: [u32; 2],
-    (rays, projection): (&CameraRays, &Projection),
+    (rays, projection, clip): (&CameraRays, &Projection, [f64; 2]),
     bounds: Option<&Bounds>,
 ) -> Frame {
     let mut frame = Frame::zeroed();
@@ -144,7 +148,7 @@ fn frame(
     frame.viewport = size.map(|side| side as f32);
     frame.near = projection.near as f32;
     frame.key_slope = key.slope as f32;
-    frame.key_far = key.far as f32;
+    [frame.key_near, frame.key_far] = key.of_planes(projection, clip).map(|key| key as f32);
     let distance = bounds.map_or(projection.near, |bounds| rays.distance(bounds.centre()));
     frame.key_gain = key.gain(projection, distance) as f32;
     frame.key_reach = key.reach(rays, projection) as f32;
@@ -172,9 +176,57 @@ fn frame(
     frame
 }
 
-fn camera_rays(camera: &Camera, size: [u32; 2]) -> Result<(CameraRays, Projection)> {
+/// The rays of a camera whose unit is `unit` world units, and its projection with these depths.
+fn camera_rays(
+    camera: &Camera,
+    size: [u32; 2],
+    depths: &DepthRange,
+    unit: f64,
+) -> Result<(CameraRays, Projection)> {
     let projection = camera.projection()?;
-    Ok((CameraRays::new(camera, &projection, size)?, projection))
+    let rays = CameraRays::new(camera, &projection, size, depths.offset / unit)?;
+    let [near, far] = match depths.planes {
+        Some(planes) => planes.map(|plane| plane / unit),
+        None => [projection.near, projection.far],
+    };
+    Ok((rays, Projection { near, far, ..projection }))
+}
+
+/// Distances of a frame, world units. With parallel rays they are counted from a plane near the scenes, and the near and far planes are moved
+/// to them, so that float32 resolves depths relative to the scenes, wherever the eye and the camera's own planes are.
+struct DepthRange {
+    /// Distance of that plane from the eye.
+    offset: f64,
+    /// Distances from it between which the depth key is exact; `None` for those of the camera's planes.
+    planes: Option<[f64; 2]>,
+    /// Distances of the camera's near and far planes from it.
+    clip: [f64; 2],
+}
+
+/// Distance of the planes from the middle of the scenes, in radii of their bounding sphere: edge-on discs that the low-pass widens have
+/// fragments far in front of and behind them.
+const PLANES: f64 = 4.0;
+
+impl DepthRange {
+    /// The range for scenes with these bounds; the camera's own without any.
+    fn new(camera: &Camera, bounds: Option<&Bounds>) -> Result<Self> {
+        let projection = camera.projection()?;
+        let clip = [projection.near, projection.far];
+        let own = Self { offset: 0.0, planes: None, clip };
+        let Some(bounds) = bounds.filter(|bounds| !projection.perspective && bounds.radius > 0.0) else {
+            return Ok(own);
+        };
+        let middle = projection.forward * camera.view.transform_point3(bounds.centre()).z;
+        let reach = PLANES * bounds.radius;
+        let (near, far) = (projection.near.max(middle - reach), projection.far.min(middle + reach));
+        if near >= far {
+            return Ok(own);
+        }
+        // Distances stay above 0 where they are.
+        let offset = (near - (far - near)).max(0.0);
+        let counted = |plane: f64| plane - offset;
+        Ok(Self { offset, planes: Some([near, far].map(counted)), clip: clip.map(counted) })
+    }
 }
 
 /// Splits a vector into the sum of two float vectors, 48 bits per coordinate.
@@ -188,7 +240,7 @@ fn split(v: DVec4) -> [[f32; 4]; 2] {
 struct CameraRays {
     /// World → homogeneous pixel (x, y, w) for positions relative to `eye`; w is the distance along `forward` in perspective.
     rows: [DVec4; 3],
-    /// Common point of the rays; for parallel rays, the origin of eye space.
+    /// Common point of the rays; for parallel rays, a point of the eye plane.
     eye: DVec3,
     /// Unit viewing direction.
     forward: DVec3,
@@ -200,7 +252,8 @@ struct CameraRays {
 }
 
 impl CameraRays {
-    fn new(camera: &Camera, projection: &Projection, size: [u32; 2]) -> Result<Self> {
+    /// The rays of a camera; the eye plane of parallel rays is `offset` in front of the camera's.
+    fn new(camera: &Camera, projection: &Projection, size: [u32; 2], offset: f64) -> Result<Self> {
         let world_to_clip = camera.world_to_clip();
         let scale = camera.projection.row(3).abs().max_element();
         let [x, y, w] = [0, 1, 3].map(|i| world_to_clip.row(i) / scale);
@@ -214,7 +267,7 @@ impl CameraRays {
         let eye = if projection.perspective {
             inverse * -DVec3::from_array(rows.map(|row| row.w))
         } else {
-            camera.view.inverse().transform_point3(DVec3::ZERO)
+            camera.view.inverse().transform_point3(DVec3::ZERO) + offset * forward
         };
         if !inverse.is_finite() || !eye.is_finite() {
             let text = "the camera's matrices are singular: give a field of view and axes of some extent";
@@ -245,17 +298,23 @@ impl CameraRays {
 struct DepthKey {
     /// Orthographic: −dκ/dz. The far plane's κ is ½, which leaves room for surfaces moved back by ε.
     slope: f64,
-    /// κ of the far plane.
-    far: f64,
 }
 
 impl DepthKey {
     fn new(projection: &Projection) -> Self {
         match projection.perspective {
-            true => Self { slope: 0.0, far: projection.near / projection.far },
+            true => Self { slope: 0.0 },
             // Rounded first, so that the rays are computed from the shaders' slope.
-            false => Self { slope: f64::from((0.5 / (projection.far - projection.near)) as f32), far: 0.5 },
+            false => Self { slope: f64::from((0.5 / (projection.far - projection.near)) as f32) },
         }
+    }
+
+    /// κ of planes at these distances.
+    fn of_planes(&self, projection: &Projection, distances: [f64; 2]) -> [f64; 2] {
+        distances.map(|distance| match projection.perspective {
+            true => projection.near / distance,
+            false => 1.0 - self.slope * (distance - projection.near),
+        })
     }
 
     /// Columns that give the κ of a plane at a pixel: see `frame.glsl`.

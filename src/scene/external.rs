@@ -80,6 +80,7 @@ impl Scene {
             unchecked: AtomicBool::new(true),
             count: AtomicU64::new(external.count),
             bounds: Mutex::new(external.bounds),
+            bounds_hold: AtomicBool::new(false),
         })
     }
 }

@@ -134,6 +134,12 @@ impl<'a> Placed<'a> {
         self.placement.map_or(own, |placement| placement.bounds(&own))
     }
 
+    /// The same with all radii; `None` if they may not hold.
+    pub(crate) fn sure_bounds(&self) -> Option<Bounds> {
+        let own = self.scene.sure_bounds()?;
+        Some(self.placement.map_or(own, |placement| placement.bounds(&own)))
+    }
+
     /// Upper bounds of the number of surfels that are drawn.
     pub(crate) fn most_drawn(&self, camera: &Camera, size: [u32; 2]) -> MostDrawn {
         let camera = self.placement.map_or(*camera, |placement| placement.seen_by(camera));

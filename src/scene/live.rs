@@ -51,15 +51,26 @@ impl Scene {
         *self.bounds.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Sets the bounds, for cameras that frame the scene. Elements beyond them are drawn all the same: frames use the bounds only to scale
-    /// sums of depths by the approximate distance of the scene, and to sort surfels in arbitrary order ([`crate::scene::Order`]).
+    /// Sets the bounds, for cameras that frame the scene. Elements beyond them are drawn all the same: frames use bounds that were set only to
+    /// scale sums of depths by the approximate distance of the scene, and to sort surfels in arbitrary order ([`crate::scene::Order`]).
     ///
     /// # Errors
     /// [`Error::Usage`] if the bounds are not finite.
     pub fn set_bounds(&self, bounds: Bounds) -> Result<()> {
         check_bounds(&bounds)?;
-        *self.bounds.lock().unwrap_or_else(PoisonError::into_inner) = bounds;
+        self.bounds_hold.store(false, Ordering::Relaxed);
+        self.store_bounds(bounds);
         Ok(())
+    }
+
+    pub(super) fn store_bounds(&self, bounds: Bounds) {
+        *self.bounds.lock().unwrap_or_else(PoisonError::into_inner) = bounds;
+    }
+
+    /// Bounds of all elements with their radii; `None` if the bounds were set, and may not hold.
+    pub(crate) fn sure_bounds(&self) -> Option<Bounds> {
+        let largest = self.largest().filter(|_| self.bounds_hold.load(Ordering::Relaxed))?;
+        Some(self.bounds().grown(largest.into()))
     }
 
     /// Upper bound of the radii, if known.

@@ -87,6 +87,8 @@ pub struct Scene {
     unchecked: AtomicBool,
     count: AtomicU64,
     bounds: Mutex<Bounds>,
+    /// Whether all surfels are known to be within the bounds: they are not the host's.
+    bounds_hold: AtomicBool,
 }
 
 impl Scene {
@@ -192,6 +194,7 @@ impl Scene {
             unchecked: AtomicBool::new(false),
             count: AtomicU64::new(count),
             bounds: Mutex::new(bounds),
+            bounds_hold: AtomicBool::new(true),
         };
         Ok((scene, invalid))
     }

@@ -88,7 +88,11 @@ impl Scene {
             Some(Colours::Linear(colours)) => write(uploads, self.colours.as_ref(), first, Some(colours))?,
             None => {}
         }
-        bounds.map_or(Ok(()), |bounds| self.set_bounds(bounds))?;
+        match (changes.bounds, bounds) {
+            (Some(set), _) => self.set_bounds(set)?,
+            (None, Some(bounds)) => self.store_bounds(bounds),
+            (None, None) => {}
+        }
         clusters.into_iter().for_each(ClusterChange::keep);
         Ok(())
     }

@@ -123,7 +123,7 @@ fn every_case_agrees_or_says_why_not() {
             assert_eq!(values, others, "{} {}", sweep.name, method.name);
         }
     }
-    assert_eq!(sweeps.len(), 16);
+    assert_eq!(sweeps.len(), 18);
     let halves =
         |sweep: &Sweep| sweep.points.iter().any(|point| point.implementation.variant.contains("16-bit"));
     assert!(sweeps.iter().all(|sweep| halves(sweep) == (sweep.name == "accumulator")));

@@ -34,6 +34,7 @@ mod lines;
 mod materials;
 mod mesh_outlines;
 mod papers;
+mod parallel;
 mod ply_edge;
 mod point_budget;
 mod point_octree;

@@ -8,6 +8,7 @@ mod attributes;
 mod case;
 mod compare;
 mod depth;
+mod far;
 mod grazing;
 mod layers;
 mod offset;
@@ -56,7 +57,8 @@ impl Default for Options {
 /// All cases, in execution order.
 fn cases() -> Vec<Case> {
     let families = grazing::cases().into_iter().chain(planes::cases()).chain([depth::case()]);
-    let families = families.chain(offset::cases()).chain(shape::cases()).chain(overlap::cases());
+    let families =
+        families.chain(far::cases()).chain(offset::cases()).chain(shape::cases()).chain(overlap::cases());
     families.chain([layers::case(), sizes::case(), attributes::case()]).collect()
 }
 

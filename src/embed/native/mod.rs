@@ -372,7 +372,13 @@ impl Renderer {
         let format = self.plan.seeded().filter(|_| own.iter().all(can_seed));
         let largest = placed.iter().map(|placed| placed.largest()).reduce(|a, b| Some(a?.max(b?))).flatten();
         let seed = format.zip(largest).and_then(|(format, largest)| {
-            seeding::seed(format, depth, (&uniforms.frame, variant.perspective), largest, variant.precision)
+            seeding::seed(
+                format,
+                depth,
+                (&uniforms.frame, uniforms.view.distance_offset.into(), variant.perspective),
+                largest,
+                variant.precision,
+            )
         });
         let bindings = targets.bindings(&subpasses::inputs(&self.plan));
         self.frame.make(&placed, &frame, targets.size, &bindings)?;

@@ -23,7 +23,7 @@ const REACH: f64 = 4.0 * 2.42;
 pub(super) fn seed(
     format: vk::Format,
     depth: [f32; 4],
-    (block, perspective): (&Frame, bool),
+    (block, distance_offset, perspective): (&Frame, f64, bool),
     largest: f64,
     precision: Precision,
 ) -> Option<Seed> {
@@ -32,7 +32,7 @@ pub(super) fn seed(
     let [scale, offset] = if perspective {
         [near / by_distance, -near * first / by_distance]
     } else {
-        [-slope / by_distance, 1.0 + slope * (near + first / by_distance)]
+        [-slope / by_distance, 1.0 + slope * (near + distance_offset + first / by_distance)]
     };
     // 16-bit sums lose summands below a thousandth of them.
     let rounding = match precision {

@@ -105,7 +105,7 @@ impl Expected {
         }
         settings.splatting.normalization.check_weights(surfels.weights.is_some())?;
         let projector = Projector::new(camera, size, settings)?;
-        let model = ErrorModel { projector: &projector, rounding: tolerance.rounding };
+        let model = ErrorModel::new(&projector, surfels, tolerance.rounding);
         let scene = ProjectedScene::project(&projector, surfels);
         let possible = sides::possible(&model, scene.clone(), size);
         let bounds = ErrorBounds::new(&model, &possible, &Bands::new(&projector, &possible, size));

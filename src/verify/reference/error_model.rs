@@ -4,12 +4,13 @@ use super::bands::{Band, BandSplats};
 use super::ellipse::{Ellipse, HALF_PIXEL};
 use super::rank::Rank;
 use super::{Projector, Splat};
+use crate::geometry::Surfels;
 use glam::{DVec2, DVec3};
 
 /// Distance from a cut-off ellipse or a clip line within which a pixel centre is ambiguous, px.
 pub(super) const CUTOFF_TOLERANCE: f64 = 2e-4;
 
-/// Relative distance from a threshold within which a depth is ambiguous.
+/// Relative distance from a threshold within which a depth is ambiguous: of its distance, or of what [`ErrorModel::largest`] says.
 pub(super) const DEPTH_TOLERANCE: f64 = 2e-6;
 
 /// A splat that may cover a pixel.
@@ -21,6 +22,8 @@ pub(super) struct Candidate<'a> {
     pub depth: f64,
     /// Error bound of the depth; see [`super::Tolerance::rounding`].
     pub depth_error: f64,
+    /// The distance that float32 rounds it by.
+    resolved: f64,
     ellipse: &'a Ellipse,
     /// Position of the pixel's centre in the kernel, σ.
     in_kernel: DVec2,
@@ -42,7 +45,7 @@ impl Candidate<'_> {
 
     /// Error bound of the depth in a comparison.
     pub fn depth_tolerance(&self) -> f64 {
-        self.depth_error.max(DEPTH_TOLERANCE * self.depth.abs())
+        self.depth_error.max(DEPTH_TOLERANCE * self.resolved)
     }
 }
 
@@ -62,6 +65,8 @@ pub(super) struct ErrorModel<'a> {
     pub projector: &'a Projector,
     /// See [`super::Tolerance::rounding`].
     pub rounding: f64,
+    /// Largest distance that depths are rounded by: with parallel rays they are relative to the scene.
+    largest: f64,
 }
 
 /// A side of the clip lines on which a splat may lie.
@@ -88,7 +93,20 @@ fn sides(distance: f64, reach: f64) -> impl Iterator<Item = Side> {
     may_be_kept.then_some(kept).into_iter().chain(may_be_clipped.then_some(clipped))
 }
 
-impl ErrorModel<'_> {
+/// Distance from a plane near the scene that depths of parallel rays are rounded by, in radii of the scene's bounding sphere.
+const PARALLEL: f64 = 4.0;
+
+impl<'a> ErrorModel<'a> {
+    pub fn new(projector: &'a Projector, surfels: &Surfels, rounding: f64) -> Self {
+        let radius = surfels.bounds().filter(|_| !projector.is_perspective()).map(|bounds| bounds.radius);
+        Self { projector, rounding, largest: radius.map_or(f64::INFINITY, |radius| PARALLEL * radius) }
+    }
+
+    /// The distance that float32 rounds a depth by.
+    pub fn resolved(&self, depth: f64) -> f64 {
+        depth.abs().min(self.largest)
+    }
+
     /// Calls `visit` for every splat and pixel of the band that may intersect.
     pub fn scan(
         &self,
@@ -123,6 +141,7 @@ impl ErrorModel<'_> {
                         pixel: hit.index,
                         depth,
                         depth_error,
+                        resolved: self.resolved(depth),
                         ellipse: &ellipse,
                         in_kernel: hit.in_kernel,
                         certain: splat.certain && certain && !near_rim && !side.near && beyond > unsure,

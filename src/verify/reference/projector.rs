@@ -45,6 +45,11 @@ impl Projector {
         self.settings.cutoff.into()
     }
 
+    /// Whether the projection is perspective.
+    pub(super) fn is_perspective(&self) -> bool {
+        self.depth.perspective
+    }
+
     /// Distance up to which a splat has fragments beyond its clip lines, px. They show only where there are no others.
     pub(super) fn clip_reach(&self) -> f64 {
         if self.settings.drawn_alpha() == Alpha::Coverage { BEYOND } else { 0.0 }

@@ -180,8 +180,8 @@ type Bound = (Rank, f64);
 fn bound(model: &ErrorModel, splat: &Splat, [offset, units]: [f64; 2]) -> Bound {
     let [depth, of_centre] = [offset, 0.0].map(|offset| depth_behind(model.projector, splat, offset));
     let error = SHIFT_ERROR * (1.0 + units / f64::from(model.projector.settings.epsilon));
-    let tolerance =
-        (DEPTH_TOLERANCE + error + model.rounding * splat.secant) * depth.abs().max(of_centre.abs());
+    let tolerance = (DEPTH_TOLERANCE + error + model.rounding * splat.secant)
+        * model.resolved(depth).max(model.resolved(of_centre));
     (Rank { clipped: false, depth }, tolerance)
 }
 
