@@ -171,6 +171,7 @@ uint load_disc(uint i, out Disc disc) {
     disc.radius = r;
     disc.aspect = shape.w;
     disc.major = shape.xyz;
+    disc.billboard = is_billboard(i);
     disc.axes = ELLIPSES ? ellipse_axes(n, shape) : tangents(n);
 
     // Position relative to the eye, homogeneous pixel and the plane's h = n·position, in twice the precision: everything below is relative

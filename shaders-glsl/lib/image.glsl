@@ -13,6 +13,7 @@ struct Disc {
     float aspect; // shorter semi-axis / longer
     mat2x3 axes;  // directions of the semi-axes, the second of length `aspect`
     vec3 major;   // of an ellipse: the stored first axis, unit and orthogonal to the normal up to rounding
+    bool billboard;
 };
 
 #include "lib/fine_conic.glsl"
@@ -40,11 +41,11 @@ float clearance(Disc disc, vec3 S, vec3 T) {
 }
 
 // Least relative difference of the variances for which a parallelogram's sides follow the ellipse's axes; below it, rounding would rotate
-// them, and they follow the screen's.
+// them, and they follow the screen's. So do those of billboards, whose ellipses are nearly circles everywhere.
 const float LEAST_ANISOTROPY = 1e-4;
 
-void align_sides(inout Conic conic) {
-    bool circle = conic.variance.x - conic.variance.y <= LEAST_ANISOTROPY * conic.variance.x;
+void align_sides(Disc disc, inout Conic conic) {
+    bool circle = disc.billboard || conic.variance.x - conic.variance.y <= LEAST_ANISOTROPY * conic.variance.x;
     if (FOOTPRINT != PARALLELOGRAM || !circle) return;
     conic.axis = vec2(1.0, 0.0);
     conic.axis_residual = 0.0;
@@ -66,7 +67,7 @@ Image image_of_disc(Disc disc, float sigma, vec3 S, vec3 T) {
     float lean = frame.cutoff * (PERSPECTIVE ? length(g) : sigma * length(view.forward_hi.xyz * disc.axes));
     Conic conic = CONFETTI ? fine_conic(disc, sqrt_det)
                            : conic_of(vec3(Dx, 0.0), vec3(Dy, 0.0), o, q, frame.cutoff, sqrt_det);
-    align_sides(conic);
+    align_sides(disc, conic);
     return Image(conic, sqrt_det, lean, vec2(0.0));
 }
 

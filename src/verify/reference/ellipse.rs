@@ -92,7 +92,11 @@ impl Ellipse {
         // The trace minus the major variance would cancel.
         let minor = if major > 0.0 { splat.sqrt_det * (splat.sqrt_det / major) } else { 0.0 };
         let sided = projector.settings.splatting.footprint == Footprint::Parallelogram;
-        let anisotropy = if sided && major > 0.0 { (major - minor) / major } else { 1.0 };
+        let anisotropy = match sided {
+            true if splat.billboard => 0.0,
+            true if major > 0.0 => (major - minor) / major,
+            _ => 1.0,
+        };
         let angle = if anisotropy <= LEAST_ANISOTROPY { 0.0 } else { 0.5 * (2.0 * xy).atan2(xx - yy) };
         let variance = DVec2::new(widened(major), widened(minor));
         let splatting = projector.settings.splatting;

@@ -35,6 +35,8 @@ pub struct Surfel {
     pub colour: Option<DVec3>,
     /// Clip lines of the disc, if it has any.
     pub clip: Option<Clip>,
+    /// Whether it is a billboard.
+    pub billboard: bool,
 }
 
 impl Surfel {
@@ -53,6 +55,7 @@ impl Surfel {
         Self {
             position: surfels.origin + surfels.positions[index].as_dvec3(),
             normal,
+            billboard: normal == DVec3::ZERO,
             radius: surfels.radii[index].into(),
             // In the disc's plane; float32 computes it from the same values.
             major: square_axis(surfels.normals[index], ellipse.map(|ellipse| ellipse.major)),
@@ -107,6 +110,8 @@ pub struct Splat {
     pub turn: Option<TurnLine>,
     /// Whether its surfel faces away and is not two-sided.
     pub back: bool,
+    /// Whether its surfel is a billboard: the sides of a parallelogram are parallel to the picture's.
+    pub billboard: bool,
     /// Whether rounding does not decide if [`Cull::Auto`] drops it.
     pub certain: bool,
 }
@@ -235,6 +240,7 @@ impl Projector {
             clip: surfel.clip.filter(|_| !is_point).map(|clip| self.screen_clip(&clip, centre, normal)),
             turn: (facing < 0.0).then(|| self.turn_line(surfel, centre, image.plane)).flatten(),
             back: facing >= 0.0 && !surfel.two_sided,
+            billboard: surfel.billboard,
             certain: true,
         };
         let attribute = Ellipse::attribute(&splat, self);

@@ -42,6 +42,7 @@ fn disc(position: DVec3, normal: DVec3, radius: f64) -> Surfel {
     let major = normal.any_orthonormal_vector();
     let weights = [1.0; 4];
     Surfel {
+        billboard: false,
         position,
         normal,
         radius,
