@@ -103,7 +103,7 @@ impl Reader for Las {
     }
 }
 
-/// What is told of the octree of a file, if it has one. Damage to it does not matter to who reads all points.
+/// What is reported of the octree of a file, if it has one. Damage to it does not matter to who reads all points.
 fn octree_facts(octree: &Parsed<Option<Octree>>) -> Option<(String, String)> {
     let text = match octree {
         Ok(octree) => octree.as_ref()?.summary(),

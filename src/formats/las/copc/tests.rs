@@ -37,14 +37,15 @@ fn coarse_levels_are_read_as_far_as_they_are_needed() {
         let all: Vec<u64> = (0..60).filter(|point| point % 3 < expected).collect();
         assert_eq!(numbers(&cloud), all, "{enough:?}");
         assert_eq!((report.points, report.dropped.thinned), (60, 60 - all.len() as u64), "{enough:?}");
-        let told = report.details.iter().find(|(name, _)| name == "octree").map(|(_, text)| text.as_str());
+        let reported =
+            report.details.iter().find(|(name, _)| name == "octree").map(|(_, text)| text.as_str());
         let expected = "22 nodes in 3 levels, spacing 8.000 to 2.000, points by level 20 20 20";
-        assert_eq!(told, Some(expected));
+        assert_eq!(reported, Some(expected));
     }
 }
 
 #[test]
-fn damage_is_told_and_matters_to_coarse_levels_alone() {
+fn damage_is_reported_and_matters_to_coarse_levels_alone() {
     let file = std::fs::read(path()).unwrap();
     let long = |at: usize| u64::from_le_bytes(std::array::from_fn(|byte| file[at + byte]));
     let [page, size] = [ROOT, ROOT + 8].map(long);
@@ -87,8 +88,8 @@ fn damage_is_told_and_matters_to_coarse_levels_alone() {
         );
         let Loaded { cloud, report, .. } = read_bytes("a", &damaged, &least(None)).unwrap();
         assert_eq!(numbers(&cloud), (0..60).collect::<Vec<_>>(), "{expected}");
-        let told = report.details.iter().any(|(name, text)| name == "octree" && text.contains(expected));
-        assert!(told || expected == "no node is the chunk", "{expected}: {:?}", report.details);
+        let reported = report.details.iter().any(|(name, text)| name == "octree" && text.contains(expected));
+        assert!(reported || expected == "no node is the chunk", "{expected}: {:?}", report.details);
     }
     // Pages that overlap are read once at most.
     let chain: Vec<u8> =
