@@ -7,7 +7,8 @@ use crate::settings::Precision;
 use crate::vk::{Access, Buffer, Commands, Device, Image};
 use std::sync::Arc;
 
-/// A pixel of a pyramid level, as in `lib/pyramid.glsl`.
+/// A pixel of a pyramid level, as in `lib/pyramid.glsl`. With parallel rays, distances are counted from a plane near the scene if the eye is far
+/// away.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PyramidSample {
     /// Least distance of the surface.

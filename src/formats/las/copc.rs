@@ -19,7 +19,7 @@ pub const INFO: u16 = 1;
 /// Number of the extended record that has the nodes.
 pub const HIERARCHY: u16 = 1000;
 
-/// Number of points that a point record's own nodes of one level are apart: cells of the root along an axis.
+/// Cells of a node along an axis: each has at most one of its points.
 pub const CELLS: u32 = 128;
 
 /// Most levels of an octree: the cells of more have sides of a part in 2³² of the root's.
