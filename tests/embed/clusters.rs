@@ -108,6 +108,12 @@ fn renderer(device: &Arc<Device>) -> Renderer {
     .unwrap()
 }
 
+/// The scene with bounds that were set: parallel rays then resolve depths between the camera's planes, as of a host's buffers.
+fn with_planes_of_cameras(scene: Scene) -> Scene {
+    scene.set_bounds(scene.bounds()).unwrap();
+    scene
+}
+
 /// A scene of these surfels without bounds of its clusters, and their buffer.
 fn unbounded(device: &Arc<Device>, surfels: &Surfels) -> (Scene, RawBuffer) {
     let layout = Layout::wide();
@@ -144,7 +150,7 @@ fn culled_clusters_do_not_change_the_picture() {
     {
         let Some(device) = device(limits) else { return };
         let surfels = surfels();
-        let own = Scene::upload(&device, &surfels).unwrap();
+        let own = with_planes_of_cameras(Scene::upload(&device, &surfels).unwrap());
         assert!(own.streams().clusters);
         let (other, buffer) = unbounded(&device, &surfels);
         let mut renderers = [renderer(&device), renderer(&device)];
@@ -183,7 +189,8 @@ fn clusters_of_instances_are_culled_one_by_one() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let surfels = surfels();
     let few = first(&surfels, 100);
-    let [own, own_few] = [&surfels, &few].map(|surfels| Arc::new(Scene::upload(&device, surfels).unwrap()));
+    let upload = |surfels| Arc::new(with_planes_of_cameras(Scene::upload(&device, surfels).unwrap()));
+    let [own, own_few] = [&surfels, &few].map(upload);
     let (other, buffer) = unbounded(&device, &surfels);
     let (other_few, buffer_few) = unbounded(&device, &few);
     let [other, other_few] = [other, other_few].map(Arc::new);
