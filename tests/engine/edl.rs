@@ -4,7 +4,6 @@ use crate::after_light::{DEPTHS, ExactDepths, RASTERIZERS, SIZE, difference, par
 use crate::support::gpu::{Renderers, assert_silent, device, render};
 use crate::support::if_whole;
 use surfel::settings::methods::{Method, confetti, perspective_ewa, pull_push, sprites};
-use surfel::settings::splatting::Filter;
 use surfel::settings::{Alpha, Shading};
 use surfel::verify::reference::{Expected, Tolerance};
 use surfel::verify::scenes;
@@ -89,9 +88,7 @@ fn the_lighting_is_that_of_the_exact_depths() {
     let exact = ExactDepths::new(if_whole(512, 160));
     for method in if_whole(Method::OWN.to_vec(), vec![perspective_ewa::METHOD, pull_push::METHOD]) {
         let [median, most] = exact.errors(&device, method, &|settings| settings.shading = Shading::Edl);
-        // Without a filter, a pixel shows the depth of a sprite alone.
-        let bar = if method.splatting.filter == Filter::None { 5e-3 } else { 2e-3 };
-        assert!(median < bar && most < 0.05, "{}: {median}, {most}", method.name);
+        assert!(median < 2e-3 && most < 0.05, "{}: {median}, {most}", method.name);
     }
     assert_silent(&device);
 }

@@ -42,7 +42,7 @@ pub fn cases() -> [Case; 2] {
 
 fn coarse(distance: f64, _: Precision) -> Option<&'static str> {
     (distance >= 1e5).then_some(
-        "depths of float32 are 2⁻²⁴ of the distance apart, up to a twentieth of ε: splats about ε from the nearest one are taken or left",
+        "depths of float32 are 2⁻²⁴ of the distance apart, a twentieth of ε or more: splats about ε from the nearest one are taken or left",
     )
 }
 
