@@ -82,7 +82,8 @@ bool has_surfel(uint entry) {
 // disc radii, it is at most √(8 R) disc radii behind, and the tangent of its angle to the screen is at least √(R / 2). The limits meet at R = 32.
 const float BEHIND_CENTRE = 16.0; // disc radii, or widths of a pixel where these are larger
 const float STEEP = 4.0;          // tangent: 76°
-// How far the disc may be behind the surface in a pixel beside its centre's; same unit. Measured.
+// How far the disc may be behind the surface in a pixel beside its centre's. A pixel's width w from its outline, that same surface is √(2 R r w) nearer
+// than at it: at most 8 √(r w) for R = 32.
 const float BEHIND_BESIDE = 8.0;
 const ivec2 BESIDE[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
 
@@ -120,7 +121,9 @@ bool is_hidden(Splat splat) {
         for (int k = 0; k < 4; k++) are_ends_hidden = are_ends_hidden && key_at(centre, reach * BESIDE[k]) >= own;
         if (are_ends_hidden) return true;
     }
-    float nearest = key_behind(key, shift, -BEHIND_BESIDE * unit);
+    // On the outline of the picture, triangles of a coarse mesh still face the eye where their normals, means of several, face away.
+    if (at_centre == 0.0) return false;
+    float nearest = key_behind(key, shift, -BEHIND_BESIDE * sqrt(unit * width));
     for (int k = 0; k < 4; k++) {
         float beside = key_at(centre, BESIDE[k]);
         if (beside >= own && beside <= nearest) return true;

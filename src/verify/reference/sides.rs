@@ -1,5 +1,5 @@
 //! Pass `sides`: drops splats that face away where a surface that faces the eye hides them, lies at most a radius behind
-//! their centres, or is a little nearer in a pixel beside that of the centre.
+//! their centres, or is a little nearer in a pixel beside that of the centre, which shows a surface, too.
 
 use super::bands::{Bands, ROWS};
 use super::depth_range::{DepthRange, DepthRanges};
@@ -21,7 +21,8 @@ const SHIFT_ERROR: f64 = 4.0 / (1 << 24) as f64;
 const BEHIND_CENTRE: f64 = 16.0;
 /// Tangent of the angle to the screen from which a disc is steep: 76°.
 const STEEP: f64 = 4.0;
-/// How far the disc may be behind the surface in a pixel beside its centre's; same unit. Measured.
+/// How far the disc may be behind the surface in a pixel beside its centre's. A pixel's width w from its outline, that same
+/// surface is √(2 R r w) nearer than at it, where r is the disc's radius: at most 8 √(r w) for R = 32.
 const BEHIND_BESIDE: f64 = 8.0;
 /// Relative rounding error of that tangent, and of a radius in widths of a pixel.
 const STEEP_ERROR: f64 = 1e-4;
@@ -42,14 +43,17 @@ pub(super) fn pass(projector: &Projector, scene: ProjectedScene, size: [u32; 2])
     let is_dropped = |splat: &Splat| {
         let depth = |offset| depth_behind(projector, splat, offset);
         let own = depth(0.0);
-        let before = |units: f64| depth(-units * unit(projector, splat));
+        let unit = unit(projector, splat);
         let behind = depth(radius(projector, splat));
         let centre = pixel(splat.centre, size);
         let reach = radius(projector, splat) / projector.pixel_width();
         let is_hidden = |at| is_within(at, f64::NEG_INFINITY, own);
-        around(centre, 1, size).any(|at| is_within(at, before(BEHIND_BESIDE), own))
+        let nearest = depth(-BEHIND_BESIDE * (unit * projector.pixel_width()).sqrt());
+        // On the outline of the picture, triangles of a coarse mesh still face the eye where their normals face away.
+        let is_covered = is_within(centre, f64::NEG_INFINITY, f64::INFINITY);
+        is_covered && around(centre, 1, size).any(|at| is_within(at, nearest, own))
             || is_within(centre, f64::NEG_INFINITY, behind)
-                && (is_within(centre, before(BEHIND_CENTRE), behind)
+                && (is_within(centre, depth(-BEHIND_CENTRE * unit), behind)
                     || steepness(projector, splat) > STEEP
                     || around(centre, ends(reach), size).all(is_hidden))
     };
@@ -138,25 +142,36 @@ impl Fronts<'_> {
     fn hides_at(&self, splat: &Splat, centre: [u32; 2], reach: u32) -> Outcome {
         let projector = self.model.projector;
         let own = bound(self.model, splat, [0.0, 0.0]);
-        let before = |units: f64| bound(self.model, splat, [-units * unit(projector, splat), units]);
+        let unit = unit(projector, splat);
+        let before = |units: f64, unit: f64| bound(self.model, splat, [-units * unit, units]);
+        let nearest = before(BEHIND_BESIDE, (unit * projector.pixel_width()).sqrt());
         let behind = bound(self.model, splat, [radius(projector, splat), 1.0]);
         let slope = steepness(projector, splat);
         let steep = Outcome {
             possibly: slope > STEEP * (1.0 - STEEP_ERROR),
             certainly: slope > STEEP * (1.0 + STEEP_ERROR),
         };
-        let near =
-            around(centre, 1, self.size).map(|at| self.is_within(at, Some(before(BEHIND_BESIDE)), own));
-        let near = near.fold(Outcome::NO, Outcome::or);
+        let near = around(centre, 1, self.size).map(|at| self.is_within(at, Some(nearest), own));
+        let near = near.fold(Outcome::NO, Outcome::or).and(self.is_covered(centre));
         let hidden = around(centre, reach, self.size).map(|at| self.is_within(at, None, own));
         let hidden = hidden.fold(Outcome::YES, Outcome::and);
-        let close = self.is_within(centre, Some(before(BEHIND_CENTRE)), behind);
+        let close = self.is_within(centre, Some(before(BEHIND_CENTRE, unit)), behind);
         near.or(self.is_within(centre, None, behind).and(close.or(steep).or(hidden)))
+    }
+
+    /// Whether a pixel shows a surface.
+    fn is_covered(&self, at: [u32; 2]) -> Outcome {
+        let exists = |range: DepthRange| Outcome { possibly: range.exists(), certainly: range.exists() };
+        Outcome::of_one_of(self.ranges(at).map(exists))
+    }
+
+    /// The possible depths of the surface at a pixel.
+    fn ranges(&self, at: [u32; 2]) -> impl Iterator<Item = DepthRange> {
+        self.bands[(at[1] / ROWS) as usize].of(index([at[0], at[1] % ROWS], self.size))
     }
 
     /// Whether the surface at a pixel is at most as far as one bound, and at least as far as another.
     fn is_within(&self, at: [u32; 2], least: Option<Bound>, (most, tolerance): Bound) -> Outcome {
-        let ranges = self.bands[(at[1] / ROWS) as usize].of(index([at[0], at[1] % ROWS], self.size));
         let of_range = |range: DepthRange| {
             let nearer = Outcome {
                 possibly: range.exists() && !range.must_pass(most, tolerance),
@@ -168,7 +183,7 @@ impl Fronts<'_> {
             });
             nearer.and(farther)
         };
-        Outcome::of_one_of(ranges.map(of_range))
+        Outcome::of_one_of(self.ranges(at).map(of_range))
     }
 }
 
