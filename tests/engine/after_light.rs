@@ -66,7 +66,7 @@ pub fn difference(
     differences.fold(0.0, |most, one| if one.is_nan() || one > most { one } else { most })
 }
 
-/// Exact depths of the bumpy sphere, and 100,000 points of it.
+/// Exact depths of the bumpy sphere, and points of it.
 pub struct ExactDepths {
     size: [u32; 2],
     camera: Camera,
@@ -75,8 +75,8 @@ pub struct ExactDepths {
 }
 
 impl ExactDepths {
-    /// Those of a picture of this side, px.
-    pub fn new(side: u32) -> Self {
+    /// Those of a picture of this side, px, and so many points.
+    pub fn new(side: u32, points: u32) -> Self {
         let camera =
             Camera::look_at(DVec3::new(1.7, 1.4, 2.7), DVec3::ZERO, DVec3::Y, FRAC_PI_4, 1.0, 0.1).unwrap();
         let subject = Subject::scene("scene:bumpy-sphere").unwrap();
@@ -86,7 +86,7 @@ impl ExactDepths {
         let exact = truth::render(surface, &camera, &settings, [side; 2], &options, &()).unwrap();
         let depth = |c: &[f32; 4]| if c[3] >= 1.0 { c[0].into() } else { 0.0 };
         let depths = exact.picture.colour.iter().map(depth).collect();
-        let surfels = scenes::open("scene:bumpy-sphere?points=100000").unwrap();
+        let surfels = scenes::open(&format!("scene:bumpy-sphere?points={points}")).unwrap();
         Self { size: [side; 2], camera, depths, white: Surfels { colours: None, ..surfels } }
     }
 

@@ -74,7 +74,7 @@ fn another_strength_is_noticed() {
 #[test]
 fn the_occlusion_is_that_of_the_exact_depths() {
     let Some(device) = device(DeviceLimits::default()) else { return };
-    let exact = ExactDepths::new(if_whole(512, 160));
+    let exact = ExactDepths::new(if_whole(512, 160), 100_000);
     for method in if_whole(Method::OWN.to_vec(), vec![perspective_ewa::METHOD, pull_push::METHOD]) {
         let [median, most] = exact.errors(&device, method, &|settings| settings.ao = 1.0);
         assert!(median < 2e-3 && most < 0.05, "{}: {median}, {most}", method.name);

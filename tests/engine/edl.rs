@@ -85,7 +85,9 @@ fn splats_agree_with_the_reference() {
 #[test]
 fn the_lighting_is_that_of_the_exact_depths() {
     let Some(device) = device(DeviceLimits::default()) else { return };
-    let exact = ExactDepths::new(if_whole(512, 160));
+    // Unfiltered sprites show tangent planes, which stand out of the surface by up to half a radius' square: their median error, 0.0038 of 10⁵
+    // points, is 0.0015 of four times as many.
+    let exact = ExactDepths::new(if_whole(512, 160), if_whole(400_000, 100_000));
     for method in if_whole(Method::OWN.to_vec(), vec![perspective_ewa::METHOD, pull_push::METHOD]) {
         let [median, most] = exact.errors(&device, method, &|settings| settings.shading = Shading::Edl);
         assert!(median < 2e-3 && most < 0.05, "{}: {median}, {most}", method.name);
