@@ -95,6 +95,7 @@ Sample sample_of(uint i, ivec2 pixel, uint nearest) {
     vec3 normal = normal_of(i);
     Sample s = NO_SAMPLE;
     s.subpixel = radius < least;
+    s.back = CULL_AUTO && point.facing > 0.0 && !is_two_sided(i);
     radius = max(radius, least);
     s.near = s.depth = point.distance;
     s.far = point.distance + (PAPER ? 1.0 : 2.0) * radius;

@@ -30,6 +30,12 @@ struct Mean {
     float count, least_distance2;
 };
 
+// A child, unless it is of the far side of a surface that faces the eye at this distance.
+Sample without_far_side(Sample s, float facing) {
+    if (is_far_side(s, facing)) s.near = 0.0;
+    return s;
+}
+
 // Adds a child, if it is of the front surface: a tube or not as the front is.
 void add(Sample s, Sample front, inout Mean mean) {
     if (s.near == 0.0 || s.near > front.far || s.tube != front.tube) return;
@@ -57,6 +63,14 @@ void main() {
     if (!is_within(pass.size, pixel)) return;
     vec2 centre = level_centre(pass.level, pixel);
     Sample a = child(0, pixel, centre), b = child(1, pixel, centre), c = child(2, pixel, centre), d = child(3, pixel, centre);
+    if (CULL_AUTO) {
+        float facing = min(min(facing_distance(a, a.near > 0.0), facing_distance(b, b.near > 0.0)),
+                           min(facing_distance(c, c.near > 0.0), facing_distance(d, d.near > 0.0)));
+        a = without_far_side(a, facing);
+        b = without_far_side(b, facing);
+        c = without_far_side(c, facing);
+        d = without_far_side(d, facing);
+    }
     Sample front = nearer(nearer(nearer(a, b), c), d);
     Mean of_front = Mean(NO_SAMPLE, 0.0, 1e38);
     add(a, front, of_front);
@@ -68,6 +82,7 @@ void main() {
         mean.near = front.near;
         mean.tube = front.tube;
         mean.subpixel = front.subpixel;
+        mean.back = front.back;
         mean.depth /= of_front.count;
         mean.radius /= of_front.count;
         mean.displacement /= of_front.count;

@@ -345,7 +345,7 @@ pub static FETCH_COMPUTE: Module = Module {
     name: "fetch_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_compute.spv"),
-    constants: &[0, 1, 5, 12, 13, 17, 22, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73, 78],
+    constants: &[0, 1, 5, 12, 13, 17, 22, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 68, 73, 78],
     resources: &[(&resource::FRAME, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -375,7 +375,7 @@ pub static FETCH_RASTER_POINTS_COMPUTE: Module = Module {
     name: "fetch_raster_points_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_raster_points_compute.spv"),
-    constants: &[0, 1, 5, 12, 13, 17, 22, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73, 78],
+    constants: &[0, 1, 5, 12, 13, 17, 22, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 68, 73, 78],
     resources: &[(&resource::FRAME, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST_ID, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -755,7 +755,7 @@ pub static PULL_COMPUTE: Module = Module {
     name: "pull_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("pull_compute.spv"),
-    constants: &[0, 17, 28, 33, 34, 35, 38, 39],
+    constants: &[0, 17, 28, 33, 34, 35, 38, 39, 68],
     resources: &[(&resource::VIEWS, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -765,7 +765,7 @@ pub static PUSH_COMPUTE: Module = Module {
     name: "push_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("push_compute.spv"),
-    constants: &[0, 17, 28, 32, 33, 34, 35, 38, 39, 65],
+    constants: &[0, 17, 28, 32, 33, 34, 35, 38, 39, 65, 68],
     resources: &[(&resource::VIEWS, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -815,7 +815,7 @@ pub static SHADE_COMPUTE: Module = Module {
     name: "shade_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48, 65, 76],
+    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48, 65, 68, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -825,7 +825,7 @@ pub static SHADE_LOOKUPS_COMPUTE: Module = Module {
     name: "shade_lookups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_lookups_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48, 65, 76],
+    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48, 65, 68, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -835,7 +835,7 @@ pub static SHADE_STORE_IDS_COMPUTE: Module = Module {
     name: "shade_store_ids_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_store_ids_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48, 65, 76],
+    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48, 65, 68, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::ID_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -845,7 +845,7 @@ pub static SHADE_LOOKUPS_STORE_IDS_COMPUTE: Module = Module {
     name: "shade_lookups_store_ids_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_lookups_store_ids_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48, 65, 76],
+    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48, 65, 68, 76],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::ID_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -1002,7 +1002,7 @@ pub mod constant {
     pub const COVERAGE: u32 = 31;
     /// `COVERAGE_FOOTPRINT`, first in `shaders-glsl/attribute.glsl`.
     pub const COVERAGE_FOOTPRINT: u32 = 67;
-    /// `CULL_AUTO`, first in `shaders-glsl/footprint.glsl`.
+    /// `CULL_AUTO`, first in `shaders-glsl/copy.glsl`.
     pub const CULL_AUTO: u32 = 68;
     /// `CULL_BACK`, first in `shaders-glsl/cull.glsl`.
     pub const CULL_BACK: u32 = 1;

@@ -6,6 +6,7 @@ layout(constant_id = 34) const bool UNBOUNDED_COLOURS = false; // some colours m
 layout(constant_id = 38) const bool TEXTURE = false;           // samples have texture coordinates instead of colours
 layout(constant_id = 39) const bool IDS = false;               // samples have point ids
 layout(constant_id = 35) const bool TUBES = false;             // samples may be of tubes
+layout(constant_id = 68) const bool CULL_AUTO = false;         // the sides of surfaces are found
 
 #include "lib/sums.glsl"
 #include "lib/compact.glsl"
@@ -29,11 +30,12 @@ struct Sample {
     vec3 colour;       // linear
     bool tube;         // of a tube: the disc faces the eye, around a point of the axis
     bool subpixel;     // of a point whose own disc is smaller: see LEAST_RADIUS
+    bool back;         // faces away from the eye, with CULL_AUTO
     vec2 coordinates;  // of the disc's centre in the texture
     uint id;           // id of the point, or of the nearest of those that were averaged
 };
 
-const Sample NO_SAMPLE = Sample(0.0, 0.0, 0.0, 0.0, vec2(0.0), vec3(0.0), vec3(0.0), false, false, vec2(0.0), NOBODY);
+const Sample NO_SAMPLE = Sample(0.0, 0.0, 0.0, 0.0, vec2(0.0), vec3(0.0), vec3(0.0), false, false, false, vec2(0.0), NOBODY);
 
 // Normal or tangent, oriented like that of `other`: a tangent has no sign.
 vec3 aligned_direction(Sample s, Sample other) {
@@ -46,12 +48,26 @@ vec2 coordinate_offset(Sample s, Sample other) {
     return offset - floor(offset + 0.5);
 }
 
+// Distance of a surface that faces the eye, where there is none.
+const float NOT_FACING = 1e38;
+
+// The distance of a disc if it faces the eye.
+float facing_distance(Sample s, bool covers) {
+    return CULL_AUTO && covers && !s.back ? s.near : NOT_FACING;
+}
+
+// Whether a disc is of the far side of the surface that faces the eye at this distance, which hides it, or is behind it by no more than surfaces
+// are thick.
+bool is_far_side(Sample s, float facing) {
+    return CULL_AUTO && s.back && facing <= s.far;
+}
+
 // A sample's words, as the images of a pyramid store them (src/frame/pyramids.rs).
 //
 //     full      near, radius, displacement x y, normal x y z, far, depth, colour r g b or coordinates u v, id
 //     compact   near, displacement, radius and far − near, normal, depth, colour or coordinates u v, id
 //
-// The radius of a tube's sample is stored negated, and so is `near` of a subpixel one.
+// The radius of a tube's sample is stored negated, and so is `near` of a subpixel one, and the depth of one that faces away.
 struct Words {
     uvec4 quads[3];
     uint singles[2];
@@ -68,17 +84,17 @@ uint get_word(Words words, uint at) {
 
 Words pack_sample(Sample s) {
     Words words = Words(uvec4[3](uvec4(0), uvec4(0), uvec4(0)), uint[2](0, 0));
-    float radius = s.tube ? -s.radius : s.radius, near = s.subpixel ? -s.near : s.near;
+    float radius = s.tube ? -s.radius : s.radius, near = s.subpixel ? -s.near : s.near, depth = s.back ? -abs(s.depth) : s.depth;
     uvec3 colour = floatBitsToUint(TEXTURE ? vec3(s.coordinates, 0.0) : s.colour);
     if (COMPACT) {
         uint size = pack_halves(vec2(radius, 0.0)) | pack_length(max(s.far - s.near, 0.0)) << 16;
         words.quads[0] = uvec4(floatBitsToUint(near), pack_halves(s.displacement), size, pack_direction(s.normal));
-        set_word(words, 4, floatBitsToUint(s.depth));
+        set_word(words, 4, floatBitsToUint(depth));
         if (!TEXTURE) colour.x = UNBOUNDED_COLOURS ? pack_shared(s.colour) : pack_roots(s.colour);
     } else {
         words.quads[0] = floatBitsToUint(vec4(near, radius, s.displacement));
         words.quads[1] = floatBitsToUint(vec4(s.normal, s.far));
-        set_word(words, 8, floatBitsToUint(s.depth));
+        set_word(words, 8, floatBitsToUint(depth));
     }
     const uint first = ID_WORD - COLOUR_WORDS;
     if (COLOUR_WORDS > 0) set_word(words, first, colour.x);
@@ -101,15 +117,16 @@ Sample unpack_sample(Words words) {
         uvec4 q = words.quads[0];
         float near = abs(uintBitsToFloat(q.x)), depth = uintBitsToFloat(get_word(words, 4));
         if (!TEXTURE) colour = UNBOUNDED_COLOURS ? unpack_shared(bits.x) : unpack_roots(bits.x);
-        bool tube = TUBES && (q.z >> 15 & 1) != 0;
-        return Sample(near, near + unpack_length(q.z >> 16), depth, abs(unpackHalf2x16(q.z).x), unpackHalf2x16(q.y), unpack_direction(q.w), colour,
-                      tube, q.x >> 31 != 0, colour.xy, id);
+        bool tube = TUBES && (q.z >> 15 & 1) != 0, back = CULL_AUTO && depth < 0.0;
+        return Sample(near, near + unpack_length(q.z >> 16), back ? -depth : depth, abs(unpackHalf2x16(q.z).x), unpackHalf2x16(q.y),
+                      unpack_direction(q.w), colour, tube, q.x >> 31 != 0, back, colour.xy, id);
     }
     vec4 disc = uintBitsToFloat(words.quads[0]), surface = uintBitsToFloat(words.quads[1]);
     bool tube = TUBES && words.quads[0].y >> 31 != 0;
     bool subpixel = words.quads[0].x >> 31 != 0;
-    return Sample(
-        abs(disc.x), surface.w, uintBitsToFloat(get_word(words, 8)), abs(disc.y), disc.zw, surface.xyz, colour, tube, subpixel, colour.xy, id);
+    float depth = uintBitsToFloat(get_word(words, 8));
+    bool back = CULL_AUTO && depth < 0.0;
+    return Sample(abs(disc.x), surface.w, back ? -depth : depth, abs(disc.y), disc.zw, surface.xyz, colour, tube, subpixel, back, colour.xy, id);
 }
 
 // load_NAME: the sample at a texel of the pyramid that is read at descriptor set SET; words_NAME: its words.

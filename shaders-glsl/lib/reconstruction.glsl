@@ -23,6 +23,8 @@ const uint COARSER = 4, CANDIDATES = PAPER ? 4 : 13;
 struct Sums {
     Sample front;   // the front disc decides which others are of its surface
     float priority; // of the front disc
+    float facing;   // distance of the nearest disc that faces the eye, of those that cover the pixel's centre
+    vec2 beside;    // on level 0, the least and the greatest of those that face the eye in the pixel and its neighbours
     Sample mean;    // weighted sums
     float total, greatest;
     vec2 displacement;
@@ -50,20 +52,40 @@ Sample candidate(uint k, ivec2 pixel) {
     return s;
 }
 
-// Weight of a candidate for the pixel with this centre, 0 if its disc does not cover that. The front disc is the nearest that does; as
-// published, the one of greatest Gaussian weight.
+// Weight of a candidate for the pixel with this centre, 0 if its disc does not cover that.
 float weight_of(Sample s, vec2 centre, float widening, inout Sums sums) {
     if (!PAPER && pass.level == 0) widening += WIDENING_OF_SMALL * clamp(2.0 - s.radius, 0.0, 1.0);
     float m2 = radii2(s, centre + s.displacement, -s.displacement, widening);
     bool covers = s.near > 0.0 && m2 <= 1.0;
-    float weight = covers ? exp(-(PAPER ? PAPER_RIM : RIM) * m2) : 0.0;
+    sums.facing = min(sums.facing, facing_distance(s, covers));
+    return covers ? exp(-(PAPER ? PAPER_RIM : RIM) * m2) : 0.0;
+}
+
+// How far a disc is at most behind the surface that faces the eye beside it, if it is that surface's past an outline; pixels' widths, and in proportion
+// to the root of its radius, px. See `sides.glsl`.
+const float BEHIND_BESIDE = 8.0;
+
+// Whether a disc of level 0 is the surface that faces the eye beside it, past an outline.
+bool is_past_outline(Sample s, vec2 beside) {
+    if (!CULL_AUTO || pass.level > 0 || !s.back) return false;
+    float width = (PERSPECTIVE ? s.near : 1.0) / focal_scale(), least = s.near - BEHIND_BESIDE * sqrt(max(s.radius, 1.0)) * width;
+    return beside.x >= least && beside.x <= s.far || beside.y >= least && beside.y <= s.far;
+}
+
+void find_beside(Sample s, inout Sums sums) {
+    if (!CULL_AUTO || pass.level > 0 || s.near == 0.0 || s.back) return;
+    sums.beside = vec2(min(sums.beside.x, s.near), max(sums.beside.y, s.near));
+}
+
+// Finds the front disc: the nearest of those that cover the pixel's centre, without the far side; as published, the one of greatest Gaussian weight.
+void find_front(Sample s, inout float weight, inout Sums sums) {
+    if (is_far_side(s, sums.facing) || is_past_outline(s, sums.beside)) weight = 0.0;
     float priority = PAPER ? weight : -s.near;
-    if (PAPER && BOX_WEIGHTS && covers) weight = 1.0;
-    if (covers && priority > sums.priority) {
+    if (weight > 0.0 && priority > sums.priority) {
         sums.priority = priority;
         sums.front = s;
     }
-    return weight;
+    if (PAPER && BOX_WEIGHTS && weight > 0.0) weight = 1.0;
 }
 
 // Adds a candidate of weight `w`, if it is of the front surface.
@@ -97,6 +119,7 @@ Sample mean_of(Sums sums) {
     if (!(sums.total > 0.0)) return NO_SAMPLE;
     mean.tube = sums.front.tube;
     mean.subpixel = sums.front.subpixel;
+    mean.back = sums.front.back;
     mean.near /= sums.total;
     mean.far /= sums.total;
     mean.depth /= sums.total;
@@ -122,7 +145,8 @@ struct Surroundings {
     vec4 least, most;
 };
 
-void surround(Sample s, inout Surroundings around) {
+void surround(Sample s, vec2 beside, inout Surroundings around) {
+    if (is_past_outline(s, beside)) s.near = 0.0;
     vec4 along = vec4(s.displacement, s.displacement.x + s.displacement.y, s.displacement.x - s.displacement.y);
     around.least = s.near > 0.0 ? min(around.least, along) : around.least;
     around.most = s.near > 0.0 ? max(around.most, along) : around.most;
@@ -138,7 +162,7 @@ Sample reconstructed(ivec2 pixel) {
     vec2 centre = level_centre(pass.level, pixel);
     float widening = PAPER ? 0.0 : WIDENING * float(1u << (2 * pass.level));
 
-    Sums sums = Sums(NO_SAMPLE, PAPER ? 0.0 : -1e38, NO_SAMPLE, 0.0, 0.0, vec2(0.0), vec3(0.0), vec2(0.0), vec2(0.0));
+    Sums sums = Sums(NO_SAMPLE, PAPER ? 0.0 : -1e38, NOT_FACING, vec2(NOT_FACING, 0.0), NO_SAMPLE, 0.0, 0.0, vec2(0.0), vec3(0.0), vec2(0.0), vec2(0.0));
     Sample samples[13];
     float weights[13];
     // Unrolled by hand: compilers unroll shorter bodies only, and arrays with a dynamic index are memory. On lavapipe a fetch costs more than
@@ -147,23 +171,26 @@ Sample reconstructed(ivec2 pixel) {
     if (K < CANDIDATES) {                                                            \
         samples[K] = candidate(K, pixel);                                          \
         weights[K] = weight_of(samples[K], centre, widening, sums);                \
+        if (K >= COARSER) find_beside(samples[K], sums);                           \
     }
+#define FRONT(K) if (K < CANDIDATES) find_front(samples[K], weights[K], sums);
 #define ADD(K) if (K < CANDIDATES) add(samples[K], weights[K], centre, sums);
     WEIGHT(0) WEIGHT(1) WEIGHT(2) WEIGHT(3) WEIGHT(4) WEIGHT(5) WEIGHT(6) WEIGHT(7) WEIGHT(8) WEIGHT(9) WEIGHT(10) WEIGHT(11) WEIGHT(12)
+    FRONT(0) FRONT(1) FRONT(2) FRONT(3) FRONT(4) FRONT(5) FRONT(6) FRONT(7) FRONT(8) FRONT(9) FRONT(10) FRONT(11) FRONT(12)
     ADD(0) ADD(1) ADD(2) ADD(3) ADD(4) ADD(5) ADD(6) ADD(7) ADD(8) ADD(9) ADD(10) ADD(11) ADD(12)
     // Discs that are widened to a pixel reach beyond the outline: there, a pixel is covered if points are on all sides of its centre. They may be
     // of any surface: on steep ones, the intervals of neighbouring points do not meet.
     if (!PAPER && pass.level == 0 && sums.front.subpixel) {
         Surroundings around = Surroundings(vec4(1e38), vec4(-1e38));
-        surround(samples[4], around);
-        surround(samples[5], around);
-        surround(samples[6], around);
-        surround(samples[7], around);
-        surround(samples[8], around);
-        surround(samples[9], around);
-        surround(samples[10], around);
-        surround(samples[11], around);
-        surround(samples[12], around);
+        surround(samples[4], sums.beside, around);
+        surround(samples[5], sums.beside, around);
+        surround(samples[6], sums.beside, around);
+        surround(samples[7], sums.beside, around);
+        surround(samples[8], sums.beside, around);
+        surround(samples[9], sums.beside, around);
+        surround(samples[10], sums.beside, around);
+        surround(samples[11], sums.beside, around);
+        surround(samples[12], sums.beside, around);
         if (!is_surrounded(around)) return NO_SAMPLE;
     }
     Sample mean = mean_of(sums), point;
@@ -176,7 +203,7 @@ Sample reconstructed(ivec2 pixel) {
     }
     point = samples[8];
     // On the finest level a point is visible if its disc covers the pixel's centre; otherwise it only contributes to others.
-    if (pass.level == 0 && weights[8] == 0.0) point.near = 0.0;
+    if (pass.level == 0 && weights[8] == 0.0 || is_far_side(point, sums.facing)) point.near = 0.0;
     if (point.near == 0.0 || has_mean && point.near > mean.far) {
         point = mean;
     } else if (pass.level == 0 && has_mean && mean.near <= point.far && mean.tube == point.tube) {

@@ -27,6 +27,8 @@ pub struct PyramidSample {
     pub tube: bool,
     /// Whether it is of a point whose own disc has a radius of less than a pixel.
     pub subpixel: bool,
+    /// Whether it faces away from the eye, with [`Cull::Auto`](crate::settings::Cull::Auto).
+    pub back: bool,
     /// Linear colour, in pyramids with colours.
     pub colour: Option<[f32; 3]>,
     /// Texture coordinates of the disc's centre, in pyramids with a texture.
@@ -64,7 +66,8 @@ impl PyramidSample {
                 displacement: [float(2), float(3)],
                 normal: [float(4), float(5), float(6)],
                 far: float(7),
-                depth: float(8),
+                depth: float(8).abs(),
+                back: words[8] >> 31 != 0,
                 colour: (format.colour == 3).then(|| [0, 1, 2].map(|channel| float(first + channel))),
                 coordinates: None,
                 id: None,
@@ -77,7 +80,8 @@ impl PyramidSample {
                 tube: words[2] >> 15 & 1 != 0,
                 far: float(0).abs() + compact::length(words[2] >> 16),
                 normal: compact::direction(words[3]),
-                depth: float(4),
+                depth: float(4).abs(),
+                back: words[4] >> 31 != 0,
                 colour: (format.colour == 1).then(|| match format.unbounded_colours {
                     true => compact::shared(words[first]),
                     false => compact::roots(words[first]),

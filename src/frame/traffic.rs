@@ -145,12 +145,11 @@ fn per_pixel(resource: Resource, variant: &Variant) -> f64 {
 }
 
 /// Bytes of a scene's streams per surfel that a pass over surfels reads: all for splats, with colours if sums are stored beside them; for
-/// points the positions, and the normals if back faces are culled.
+/// points the positions and the normals, as discs seen edge-on are left out.
 fn of_streams(pass: &Pass, variant: &Variant, scene: &Streams) -> u64 {
     let makes_splats = pass.writes.contains(&Resource::Splats);
     let is_read = |name: &str| match name {
-        "positions" => true,
-        "normals" => makes_splats || variant.cull_back,
+        "positions" | "normals" => true,
         "curvatures" => makes_splats && variant.curvatures,
         "colours" => makes_splats && variant.is_tiled() && variant.colours,
         "weights" => makes_splats && variant.weights,
@@ -199,7 +198,7 @@ mod tests {
     fn a_point_is_an_atomic_minimum() {
         let passes = of(pull_push::METHOD, Rasterizer::Compute);
         let project = named(&passes, "project");
-        // Positions and, as back faces are culled, normals; a distance and an id a pixel.
+        // Positions and normals; a distance and an id a pixel.
         assert_eq!((project.surfel, project.pixel, project.atomics), (24.0, 8.0, 1.0));
         assert_eq!(named(&passes, "clear").pixel, 8.0);
         assert!(passes.iter().filter(|pass| pass.name != "project").all(|pass| pass.atomics == 0.0));

@@ -9,7 +9,7 @@ pub mod pull_push;
 pub mod splatting;
 
 use crate::error::{Error, Result};
-use crate::settings::pull_push::PullPush;
+use crate::settings::pull_push::{PullPush, Rules};
 use crate::settings::splatting::{Filter, Footprint, Splatting, Visibility};
 pub use choice::Choice;
 pub use hierarchy::Hierarchy;
@@ -168,10 +168,14 @@ impl Settings {
         if self.shading.is_coloured() || self.background.is_none() { self.alpha } else { Alpha::Mask }
     }
 
-    /// Whether the sides of surfaces are found, for [`Cull::Auto`]: by splats along viewing rays. Pull–push and [`Visibility::Axis`] draw both
-    /// sides then.
+    /// Whether the sides of surfaces are found, for [`Cull::Auto`]: by splats along viewing rays, and by pull–push with its robust rules. The
+    /// published ones and [`Visibility::Axis`] draw both sides then.
     pub fn finds_sides(&self) -> bool {
-        self.cull == Cull::Auto && self.pull_push.is_none() && self.splatting.visibility != Visibility::Axis
+        let by_method = match self.pull_push {
+            Some(pull_push) => pull_push.rules == Rules::Robust,
+            None => self.splatting.visibility != Visibility::Axis,
+        };
+        self.cull == Cull::Auto && by_method
     }
 
     /// Whether pixels at edges show the surface behind, too, for [`Edges::Mixed`].

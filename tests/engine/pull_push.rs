@@ -4,7 +4,7 @@
 use crate::support::gpu::{assert_silent, device, render};
 use crate::support::if_whole;
 use crate::support::pyramids::{FrameCase, Rendered};
-use crate::support::settings::points_alone;
+use crate::support::settings::{cull_of, points_alone};
 use crate::support::truth::{Differences, Truth};
 #[allow(dead_code)] // of what is shared
 use glam::DVec3;
@@ -96,7 +96,7 @@ fn faults_of(
     let surfels = scenes::open(&format!("scene:bumpy-sphere?points={points}&seed=1")).unwrap();
     let pull_push = PullPush::of(rules);
     let shading = Shading::Colour;
-    let settings = Settings { shading, cull: Cull::Back, pull_push: Some(pull_push), ..points_alone() };
+    let settings = Settings { shading, cull: cull_of(rules), pull_push: Some(pull_push), ..points_alone() };
     let name = format!("{points} points, {rules:?}, {precision:?}");
     let case = FrameCase {
         name,
@@ -313,7 +313,7 @@ fn where_the_levels_are_kept_changes_nothing() {
             let mut apart_in_shade = None;
             let [apart, in_turns] = [Storage::Apart, Storage::PingPong].map(|storage| {
                 let pull_push = Some(PullPush { storage, ..PullPush::of(rules) });
-                let settings = Settings { cull: Cull::Back, pull_push, ..points_alone() };
+                let settings = Settings { cull: cull_of(rules), pull_push, ..points_alone() };
                 let (picture, _) = renderer.render_picture(&scene, &camera, &settings).unwrap();
                 if storage == Storage::Apart {
                     let (fused_picture, _) = fused.render_picture(&scene, &camera, &settings).unwrap();

@@ -4,7 +4,7 @@ use crate::support::gpu::{assert_silent, device};
 use crate::support::if_whole;
 use crate::support::pyramids::FrameCase;
 use crate::support::scenes::{Case, cases};
-use crate::support::settings::points_alone;
+use crate::support::settings::{cull_of, points_alone};
 use crate::support::texture::textured;
 use glam::DVec3;
 use std::f64::consts::SQRT_2;
@@ -65,7 +65,7 @@ impl Worst {
                 .into_iter()
                 .fold(0.0, largest),
             displacement: difference / unit,
-            normal: match a.tube == b.tube && a.id == b.id {
+            normal: match (a.tube, a.back, a.id) == (b.tube, b.back, b.id) {
                 true => beyond((aligned - b.normal).abs().max_element(), steps.normal),
                 false => f64::INFINITY,
             },
@@ -308,8 +308,8 @@ fn frame_cases<'a>(
     each.flat_map(move |(size, kind, camera)| {
         rules.iter().map(move |&rules| {
             let pull_push = PullPush::of(rules);
-            let settings =
-                Settings { cull: Cull::Back, shading, alpha, pull_push: Some(pull_push), ..points_alone() };
+            let cull = cull_of(rules);
+            let settings = Settings { cull, shading, alpha, pull_push: Some(pull_push), ..points_alone() };
             let name = format!("{name} {kind} {}x{} {}", size[0], size[1], rules.name());
             FrameCase { name, parts, camera, size, settings, pull_push, precision }
         })
@@ -427,7 +427,7 @@ fn more_pixels_than_a_row_of_workgroups() {
     let aspect = f64::from(size[0]) / f64::from(size[1]);
     let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::Y, 45f64.to_radians(), aspect, 1e-3).unwrap();
     let pull_push = PullPush::of(Rules::Robust);
-    let settings = Settings { cull: Cull::Back, pull_push: Some(pull_push), ..points_alone() };
+    let settings = Settings { cull: Cull::Auto, pull_push: Some(pull_push), ..points_alone() };
     let (name, parts, precision) = ("2048x1100".into(), Parts::from(&surfels), Precision::Half);
     let case = FrameCase { name, parts, camera, size, settings, pull_push, precision };
     let mut kinds: [Summary; 3] = Default::default();

@@ -99,6 +99,7 @@ impl FrameCase<'_> {
                 normal: to_eye * DVec3::from_array(sample.normal.map(f64::from)),
                 tube: sample.tube,
                 subpixel: sample.subpixel,
+                back: sample.back,
                 colour: DVec3::from_array(sample.colour.unwrap_or(albedo).map(f64::from)),
                 coordinates: sample.coordinates.map_or(DVec2::ZERO, |at| DVec2::from(at.map(f64::from))),
                 id: sample.id.unwrap(),

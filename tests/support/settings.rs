@@ -1,6 +1,8 @@
 //! Settings of frames.
 
 use surfel::Settings;
+use surfel::settings::methods::pull_push;
+use surfel::settings::pull_push::Rules;
 use surfel::settings::splatting::{Shade, Splatting};
 use surfel::settings::{Alpha, Cull};
 
@@ -19,4 +21,12 @@ pub fn splats_alone() -> Settings {
 /// The same for pull–push, which has no splats.
 pub fn points_alone() -> Settings {
     Settings { splatting: Splatting::default(), ..splats_alone() }
+}
+
+/// The culling of the preset with these rules of pull–push.
+pub fn cull_of(rules: Rules) -> Cull {
+    match rules {
+        Rules::Paper => pull_push::PAPER.cull,
+        Rules::Robust => pull_push::METHOD.cull,
+    }
 }

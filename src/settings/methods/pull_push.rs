@@ -14,7 +14,7 @@ use crate::settings::{Alpha, Cull, Edges};
 
 /// The preset with robust rules.
 pub const METHOD: Method =
-    Method { name: "pull-push", pull_push: Some(PullPush::of(Rules::Robust)), ..PAPER };
+    Method { name: "pull-push", pull_push: Some(PullPush::of(Rules::Robust)), cull: Cull::Auto, ..PAPER };
 
 /// The preset as published.
 pub const PAPER: Method = Method {

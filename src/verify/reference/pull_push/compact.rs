@@ -177,6 +177,7 @@ mod tests {
                     normal: vector().normalize(),
                     tube: false,
                     subpixel: false,
+                    back: false,
                     colour,
                     coordinates: DVec2::ZERO,
                     id: 0,

@@ -62,6 +62,8 @@ pub struct Sample {
     pub tube: bool,
     /// Whether it is of a point whose own disc has a radius of less than a pixel: [`Sample::radius`] is that of a pixel.
     pub subpixel: bool,
+    /// Whether it faces away from the eye, where the sides of surfaces are found.
+    pub back: bool,
     /// Linear; unused where the surface has a texture.
     pub colour: DVec3,
     /// Texture coordinates of the disc's centre, if the surface has a texture.
@@ -96,11 +98,22 @@ impl Sample {
         if self.tube && self.normal.dot(other.normal) < 0.0 { -self.normal } else { self.normal }
     }
 
+    /// Whether it is of the far side of the surface that faces the eye at this distance, which hides it, or is behind it by
+    /// no more than surfaces are thick.
+    fn is_far_side(&self, facing: f64) -> bool {
+        self.back && facing <= self.far
+    }
+
     /// Shortest offset of its texture coordinates from those of `other`: textures repeat.
     fn coordinate_offset(&self, other: &Self) -> DVec2 {
         let way = self.coordinates - other.coordinates;
         way - (way + 0.5).floor()
     }
+}
+
+/// Distance of the nearest of the samples that face the eye.
+fn facing_distance<'a>(samples: impl Iterator<Item = &'a Sample>) -> f64 {
+    samples.filter(|sample| !sample.back).map(|sample| sample.near).fold(f64::INFINITY, f64::min)
 }
 
 impl Level {

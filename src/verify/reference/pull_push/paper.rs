@@ -93,6 +93,7 @@ fn blend(
         normal: mean3(&|sample| sample.aligned_direction(first)).normalize_or_zero(),
         tube: first.tube,
         subpixel: first.subpixel,
+        back: first.back,
         colour: mean3(&|sample| sample.colour),
         coordinates: DVec2::ZERO,
         id: first.id,

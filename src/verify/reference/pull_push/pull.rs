@@ -2,7 +2,7 @@
 //! ellipse, and exact displacements).
 
 use super::camera_rays::CameraRays;
-use super::{Decisions, Level, LevelDecisions, PassProgress, Sample, centre};
+use super::{Decisions, Level, LevelDecisions, PassProgress, Sample, centre, facing_distance};
 use glam::{DVec2, DVec3};
 
 pub fn pass(rays: &CameraRays, finer: &Level, progress: &PassProgress<'_>) -> LevelDecisions {
@@ -14,7 +14,7 @@ pub fn pass(rays: &CameraRays, finer: &Level, progress: &PassProgress<'_>) -> Le
     })
 }
 
-/// The finer samples of a pixel whose discs cover its centre, with the centres of the discs.
+/// The finer samples of a pixel whose discs cover its centre, without the far side, with the centres of the discs.
 pub fn children(
     finer: &Level,
     [x, y]: [i64; 2],
@@ -25,7 +25,10 @@ pub fn children(
         let sample = finer.at(at)?;
         Some((sample, finer.centre(at) + sample.displacement))
     });
-    discs.filter(|(sample, disc)| covers(sample, *disc)).collect()
+    let mut discs: Vec<_> = discs.filter(|(sample, disc)| covers(sample, *disc)).collect();
+    let facing = facing_distance(discs.iter().map(|(sample, _)| sample));
+    discs.retain(|(sample, _)| !sample.is_far_side(facing));
+    discs
 }
 
 /// The mean of the discs that belong to the nearest surface and are of its kind, tube or not, for the pixel with centre
@@ -48,6 +51,7 @@ pub fn mean_of_front(own: DVec2, discs: &[(Sample, DVec2)], decisions: &Decision
         normal: mean3(&|sample| sample.aligned_direction(front)).normalize_or_zero(),
         tube: front.tube,
         subpixel: front.subpixel,
+        back: front.back,
         colour: mean3(&|sample| sample.colour),
         coordinates: front.coordinates
             + mean3(&|sample| sample.coordinate_offset(front).extend(0.0)).truncate(),

@@ -2,7 +2,7 @@
 //! the nearest surface only, and with neighbours of the same level, without which steep surfaces have holes).
 
 use super::camera_rays::CameraRays;
-use super::{Decisions, Level, LevelDecisions, PassProgress, Sample, centre};
+use super::{Decisions, Level, LevelDecisions, PassProgress, Sample, centre, facing_distance};
 use glam::{DMat2, DVec2, DVec3};
 
 /// Widening of a disc's variance on level 0, px²; four times as much per level. Narrower discs leave holes.
@@ -14,6 +14,10 @@ const WIDENING_OF_SMALL: f64 = 0.15;
 
 /// Negated `ln` of the weight at a disc's rim: σ is a third of the radius.
 const RIM: f64 = 4.5;
+
+/// How far a disc is at most behind the surface that faces the eye beside it, if it is that surface's past an outline; pixels'
+/// widths, and in proportion to the root of its radius, px. See [`super::super::sides`].
+const BEHIND_BESIDE: f64 = 8.0;
 
 /// Widening of the covariance of the discs around a pixel, px²: discs within an eighth of a pixel do not define a
 /// texture's gradient.
@@ -54,19 +58,28 @@ pub fn pass(
             })
         };
         let above = nearest_four(at).map(|at| candidate(coarser, at));
-        let beside = neighbours(at).map(|at| candidate(pulled, at));
-        // On the finest level a point is visible if its disc covers the pixel's centre; otherwise it only contributes
-        // to others.
-        let shown = pulled.level > 0 || beside[4].is_some();
-        let candidates: Vec<_> = above.into_iter().chain(beside).flatten().collect();
+        let around = neighbours(at).map(|at| candidate(pulled, at));
+        let covers = around[4].is_some();
+        let mut candidates: Vec<_> = above.into_iter().chain(around).flatten().collect();
+        let facing = facing_distance(candidates.iter().map(|c| &c.sample));
+        let beside = if pulled.level == 0 { facing_beside(pulled, at) } else { Vec::new() };
+        candidates.retain(|c| {
+            let is_past_outline = is_past_outline(rays, &c.sample, &beside, decisions);
+            !c.sample.is_far_side(facing) && !is_past_outline
+        });
         // Discs that are widened to a pixel reach beyond the outline: there, a pixel is covered if points are on all sides
         // of its centre. They may be of any surface: on steep ones, the intervals of neighbouring points do not meet.
         let is_subpixel = front(&candidates).is_some_and(|front| front.subpixel);
-        if pulled.level == 0 && is_subpixel && !is_surrounded(pulled, at, decisions) {
+        if pulled.level == 0 && is_subpixel && !is_surrounded(rays, pulled, at, &beside, decisions) {
             return None;
         }
         let surface = blend(rays, own, &candidates, pulled.level == 0, decisions);
-        match (pulled.at(at).filter(|_| shown), surface) {
+        // On the finest level a point is visible if its disc covers the pixel's centre; otherwise it only contributes
+        // to others.
+        let shown =
+            |point: &Sample| pulled.level > 0 || covers && !is_past_outline(rays, point, &beside, decisions);
+        let point = pulled.at(at).filter(|point| shown(point) && !point.is_far_side(facing));
+        match (point, surface) {
             (Some(point), Some(surface)) if !decisions.at_most(point.near, surface.far) => Some(surface),
             (Some(point), Some(surface))
                 if pulled.level == 0
@@ -98,16 +111,41 @@ fn neighbours([x, y]: [i64; 2]) -> [[i64; 2]; 9] {
     std::array::from_fn(|i| [x + i as i64 % 3 - 1, y + i as i64 / 3 - 1])
 }
 
+/// Least and greatest distance of the points that face the eye in a pixel and its neighbours.
+fn facing_beside(pulled: &Level, at: [i64; 2]) -> Vec<f64> {
+    let around: Vec<Sample> = neighbours(at).into_iter().filter_map(|at| pulled.at(at)).collect();
+    let facing = || around.iter().filter(|sample| !sample.back).map(|sample| sample.near);
+    [facing().reduce(f64::min), facing().reduce(f64::max)].into_iter().flatten().collect()
+}
+
+/// Whether a disc is the surface that faces the eye beside it, at one of these distances, past an outline.
+fn is_past_outline(rays: &CameraRays, sample: &Sample, beside: &[f64], decisions: &Decisions) -> bool {
+    let width = rays.to_length(1.0, sample.near);
+    let least = sample.near - BEHIND_BESIDE * sample.radius.max(1.0).sqrt() * width;
+    let is_of_disc =
+        |&distance: &f64| sample.back && distance <= sample.far && decisions.at_most(least, distance);
+    beside.iter().filter(|distance| is_of_disc(distance)).count() > 0
+}
+
 fn front(candidates: &[Candidate]) -> Option<&Sample> {
     candidates.iter().map(|c| &c.sample).min_by(|a, b| a.near.total_cmp(&b.near))
 }
 
-/// Whether the points of a pixel and its neighbours are on all sides of its centre: along x, y and the diagonals.
-fn is_surrounded(pulled: &Level, at: [i64; 2], decisions: &Decisions) -> bool {
+/// Whether the points of a pixel and its neighbours are on all sides of its centre: along x, y and the diagonals. Those past
+/// an outline of the surface that faces the eye, at the distances `beside`, do not count.
+fn is_surrounded(
+    rays: &CameraRays,
+    pulled: &Level,
+    at: [i64; 2],
+    beside: &[f64],
+    decisions: &Decisions,
+) -> bool {
     let own = pulled.centre(at);
     let points: Vec<DVec2> = neighbours(at)
         .into_iter()
-        .filter_map(|at| Some(pulled.centre(at) + pulled.at(at)?.displacement - own))
+        .filter_map(|at| Some((at, pulled.at(at)?)))
+        .filter(|(_, sample)| !is_past_outline(rays, sample, beside, decisions))
+        .map(|(at, sample)| pulled.centre(at) + sample.displacement - own)
         .collect();
     let axes = [DVec2::X, DVec2::Y, DVec2::ONE, DVec2::new(1.0, -1.0)];
     let sides = axes.into_iter().flat_map(|axis| [axis, -axis]);
@@ -152,6 +190,7 @@ fn blend(
         normal: mean3(&|sample| sample.aligned_direction(front)).normalize_or_zero(),
         tube: front.tube,
         subpixel: front.subpixel,
+        back: front.back,
         colour: mean3(&|sample| sample.colour),
         coordinates: if finest {
             coordinates_at(own, &surface, front)

@@ -29,6 +29,7 @@ fn sample(near: f64, radius: f64) -> Sample {
         normal: DVec3::NEG_Z,
         tube: false,
         subpixel: false,
+        back: false,
         colour: DVec3::ONE,
         coordinates: DVec2::ZERO,
         id: 0,

@@ -203,6 +203,7 @@ impl Reconstruction {
             normal: disc.direction.normalize_or_zero(),
             tube,
             subpixel: false,
+            back: false,
             colour: disc.colour,
             coordinates: disc.coordinates,
             id: 0,

@@ -48,6 +48,7 @@ impl Reconstruction {
             coordinates: DVec2::ZERO,
         };
         let at = [corner.x as i64, corner.y as i64];
-        Ok((at, Sample { subpixel: radius < least, ..self.sample(disc, screen, at, false) }))
+        let back = projector.settings.finds_sides() && towards > 0.0 && !surfel.two_sided;
+        Ok((at, Sample { subpixel: radius < least, back, ..self.sample(disc, screen, at, false) }))
     }
 }
