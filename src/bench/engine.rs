@@ -2,9 +2,9 @@
 
 mod traced;
 
-pub use traced::{RAYS, TracedEngine};
+pub use traced::{RAYS, TracedEngine, TracedFilter};
 
-use super::record::{Axes, Clock, Implementation, Memory, PIXELS, SPLATS, TRACED, Time};
+use super::record::{Axes, BOX_FILTER, Clock, Implementation, Memory, PIXELS, SPLATS, TRACED, Time};
 use crate::error::Result;
 use crate::frame::PassTraffic;
 use crate::geometry::{Camera, Surfels};
@@ -30,7 +30,7 @@ pub enum Engine {
     /// The CPU baseline.
     Baseline(Kind),
     /// No points: the surface or the scan's triangles, ray traced on the CPU.
-    Traced,
+    Traced(TracedFilter),
 }
 
 impl Engine {
@@ -57,7 +57,12 @@ impl Engine {
             }
             Self::Baseline(Kind::Splats) => Implementation { method: SPLATS.into(), variant: String::new() },
             Self::Baseline(Kind::Pixels) => Implementation { method: PIXELS.into(), variant: String::new() },
-            Self::Traced => Implementation { method: TRACED.into(), variant: String::new() },
+            Self::Traced(TracedFilter::Truth) => {
+                Implementation { method: TRACED.into(), variant: String::new() }
+            }
+            Self::Traced(TracedFilter::Box) => {
+                Implementation { method: TRACED.into(), variant: BOX_FILTER.into() }
+            }
         }
     }
 }

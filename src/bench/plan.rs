@@ -93,7 +93,7 @@ impl Plan {
     pub(super) fn by_engine(&self, engine: Engine) -> Self {
         let settings = match engine {
             Engine::Baseline(_) => baseline::settings(&self.settings),
-            Engine::Splatting { .. } | Engine::Traced => self.settings.clone(),
+            Engine::Splatting { .. } | Engine::Traced(_) => self.settings.clone(),
         };
         Self { engine, settings, ..self.clone() }
     }

@@ -9,8 +9,8 @@ mod schema;
 pub use ceilings::{Ceilings, PassWork, Rate, Shares};
 pub use experiment::Experiment;
 pub use run::{
-    Against, Axes, Blended, Clock, Error, Float64Error, Implementation, Memory, Octree, PIXELS, Pass, Run,
-    RunSettings, SPLATS, TRACED, Terms, Time, View, Viewpoint,
+    Against, Axes, BOX_FILTER, Blended, Clock, Error, Float64Error, Implementation, Memory, Octree, PIXELS,
+    Pass, Run, RunSettings, SPLATS, TRACED, Terms, Time, View, Viewpoint,
 };
 pub use schema::schema;
 

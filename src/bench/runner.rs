@@ -3,7 +3,7 @@
 mod octrees;
 mod truths;
 
-use super::engine::{CpuEngine, DeviceEngine, Engine, LoadedEngine, TracedEngine};
+use super::engine::{CpuEngine, DeviceEngine, Engine, LoadedEngine, TracedEngine, TracedFilter};
 use super::papers::details;
 use super::plan::{Measurements, Plan};
 use super::record::{self, Against, Float64Error, Images, Run, RunSettings, Time};
@@ -22,7 +22,7 @@ use crate::verify::metrics::path::PathValues;
 use crate::verify::metrics::{self, Pair, colour};
 use crate::verify::reference::{self, Expected, Tolerance};
 use crate::verify::scenes::Viewpoint;
-use crate::verify::truth::{self, Truth};
+use crate::verify::truth::{self, Filter, Truth};
 use crate::vk::Device;
 use crate::{RenderOptions, Scene};
 use octrees::Octrees;
@@ -321,8 +321,12 @@ impl Runner {
                 Ok(Box::new(DeviceEngine::new(self.device()?, scene, options)?))
             }
             Engine::Baseline(kind) => Ok(Box::new(CpuEngine::new(&model.surfels, size, kind)?)),
-            Engine::Traced => {
-                Ok(Box::new(TracedEngine::new(&job.subject, points, size, self.options.truth.filter)?))
+            Engine::Traced(filter) => {
+                let filter = match filter {
+                    TracedFilter::Truth => self.options.truth.filter,
+                    TracedFilter::Box => Filter::Box,
+                };
+                Ok(Box::new(TracedEngine::new(&job.subject, points, size, filter)?))
             }
         }
     }

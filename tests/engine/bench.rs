@@ -11,7 +11,7 @@ use std::sync::Arc;
 use std::time::Duration;
 use surfel::bench::Suite;
 use surfel::bench::ceilings::{self, Sizes};
-use surfel::bench::engine::Engine;
+use surfel::bench::engine::{Engine, TracedFilter};
 use surfel::bench::place::{Move, Place};
 use surfel::bench::plan::{Measurements, Plan};
 use surfel::bench::record::{Experiment, Run};
@@ -274,14 +274,19 @@ fn tracing_stands_for_the_triangles_between_the_same_points() {
     let most = subject.most_points().unwrap();
     let options = Options { truth: TRUTH, effort: EFFORT, ..Default::default() };
     let mut runner = Runner::new(options, vec![subject.clone(), without.clone()]);
-    let mut of = |scene: &str, points| {
-        let mut plan = Plan { engine: Engine::Traced, ..plan(scene, points, 64) };
+    let mut by = |filter, scene: &str, points| {
+        let mut plan = Plan { engine: Engine::Traced(filter), ..plan(scene, points, 64) };
         plan.settings.shading = Shading::Lit;
         runner.run(&plan).unwrap()
     };
+    // A triangle renderer's pixels are narrower than the truth's filter.
+    let of_squares = by(TracedFilter::Box, &subject.name, most);
+    assert_eq!(of_squares.implementation.label(), "baseline-traced --filter box");
+    let mut of = |scene: &str, points| by(TracedFilter::Truth, scene, points);
     // The mesh is the truth itself; of fewer points it has larger triangles.
     let [whole, some, few] = [most, 1000, 100].map(|points| of(&subject.name, points));
-    println!("RMSE {} {} {}", rmse(&whole), rmse(&some), rmse(&few));
+    println!("RMSE {} {} {}, of squares {}", rmse(&whole), rmse(&some), rmse(&few), rmse(&of_squares));
+    assert!(rmse(&of_squares) > 2.0 * rmse(&whole));
     assert!(rmse(&whole) < 0.01 && rmse(&some) > 1.2 * rmse(&whole) && rmse(&few) > 4.0 * rmse(&some));
     // A scene's surface does not depend on its points.
     let [some, few] = [1000, 100].map(|points| of("scene:sphere", points));
@@ -296,7 +301,8 @@ fn a_run_knows_where_its_picture_is_taken_from() {
     let options = Options { truth: TRUTH, effort: EFFORT, ..Default::default() };
     let mut runner = Runner::new(options, Vec::new());
     let mut of = |place| {
-        let mut plan = Plan { place, engine: Engine::Traced, ..plan("scene:part", 1000, 48) };
+        let mut plan =
+            Plan { place, engine: Engine::Traced(TracedFilter::Truth), ..plan("scene:part", 1000, 48) };
         plan.measurements.images = true;
         runner.run(&plan).unwrap()
     };
@@ -334,13 +340,13 @@ fn inputs_are_rendered_by_every_method_lit_and_in_their_colours() {
     // The first method also runs without a low-pass filter.
     let mut expected = vec!["perspective-ewa"];
     expected.extend(Method::OWN.iter().map(|method| method.name));
-    expected.extend(["baseline-splats", "baseline-pixels", "baseline-traced"]);
+    expected.extend(["baseline-splats", "baseline-pixels", "baseline-traced", "baseline-traced"]);
     assert_eq!(of(&all, &lit, Shading::Lit), expected);
     assert_eq!(of(&all, &lit, Shading::Colour), [""; 0]);
     assert_eq!(of(&all, &coloured, Shading::Lit), expected);
     assert_eq!(of(&all, &coloured, Shading::Colour), expected);
     let some = plans(vec![Method::named("sprites").unwrap()]);
-    let baselines = ["baseline-splats", "baseline-pixels", "baseline-traced"];
+    let baselines = ["baseline-splats", "baseline-pixels", "baseline-traced", "baseline-traced"];
     assert_eq!(of(&some, &lit, Shading::Lit), [&["sprites"][..], &baselines].concat());
 }
 

@@ -17,8 +17,16 @@ use std::time::Instant;
 /// Rays per pixel.
 pub const RAYS: u32 = 16;
 
-/// A subject's surface, or triangles between as many of its points, traced in float64 on the CPU with 16 rays a pixel and the filter of the
-/// exact pictures.
+/// Pixel filter of traced pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum TracedFilter {
+    /// That of the exact pictures.
+    Truth,
+    /// The mean of the pixel's square, as of a triangle renderer with 16 samples a pixel.
+    Box,
+}
+
+/// A subject's surface, or triangles between as many of its points, traced in float64 on the CPU with 16 rays a pixel.
 pub struct TracedEngine {
     subject: Rc<Subject>,
     /// None for the subject's own surface.

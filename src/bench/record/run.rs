@@ -17,6 +17,8 @@ pub const SPLATS: &str = "baseline-splats";
 pub const PIXELS: &str = "baseline-pixels";
 /// Name of the exact surface, or of the triangles between the same points of a scan, ray traced with 16 rays a pixel.
 pub const TRACED: &str = "baseline-traced";
+/// Variant of [`TRACED`] whose pixels are means of their squares, as of a triangle renderer, whatever the filter of exact pictures.
+pub const BOX_FILTER: &str = "--filter box";
 
 /// A scene rendered with one implementation and one set of settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -5,7 +5,7 @@ use super::plot::{Kind, Line, Plot, Scale, Style};
 use crate::bench::format;
 use crate::bench::group::{distinct, grouped};
 use crate::bench::recommendations::{Candidate, candidates, front};
-use crate::bench::record::{Experiment, Run, Session, TRACED};
+use crate::bench::record::{BOX_FILTER, Experiment, Run, Session, TRACED};
 use maud::{Markup, html};
 use std::io;
 
@@ -24,7 +24,8 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
             "each number. Pale markers are its other settings. Rings mark what "
             code { "surfel render" } " draws without options, but for the shading. Dashed lines are the CPU baseline, which is no method. "
             @if is_traced { code { (TRACED) } " below the plots is what tracing 16 rays a pixel gives: of the exact surface of a built-in scene, or of the "
-            "triangles between the same points of a scan." }
+            "triangles between the same points of a scan, with the truth's filter. " code { (TRACED) " " (BOX_FILTER) } " is the mean of 16 rays over "
+            "the pixel's square: what a triangle renderer with 16 samples a pixel shows of the same points." }
         }
         @if !exact.is_empty() {
             p {
@@ -59,20 +60,26 @@ fn plots(page: &mut Page<'_>, session: &Session, exact: bool) -> io::Result<Vec<
             let (traced, drawn): (Vec<_>, Vec<_>) =
                 candidates.into_iter().partition(|candidate| candidate.run.implementation.method == TRACED);
             let plot = page.plot(Plot::of(name, title(&view), axes, lines(page, &drawn, exact)))?;
-            plots.push(html! { div { (plot) (far_below(&traced)) } });
+            plots.push(html! { div { (plot) (far_below(&traced, &drawn)) } });
         }
     }
     Ok(plots)
 }
 
-/// Ray tracing, in words: on the plot it would take the methods' room.
-fn far_below(traced: &[Candidate<'_>]) -> Markup {
-    let one = |candidate: &Candidate<'_>| {
+/// Ray tracing, in words: on the plot it would take the methods' room. Beside it the error of the picture without options, in its units.
+fn far_below(traced: &[Candidate<'_>], drawn: &[Candidate<'_>]) -> Markup {
+    let default = |points: u64| drawn.iter().find(|o| o.run.points == points && o.run.is_default());
+    let one = |candidate: &&Candidate<'_>| {
+        let points = candidate.run.points;
         let (rmse, ms) = (format::error(candidate.rmse), format::ms(candidate.ms));
-        format!("{}: RMSE {rmse} in {ms} ms of CPU time", format::count(candidate.run.points))
+        let without_options = default(points).map_or(String::new(), |default| {
+            format!("; without options {:.2} times as much", default.rmse / candidate.rmse)
+        });
+        format!("{}: RMSE {rmse} in {ms} ms of CPU time{without_options}", format::count(points))
     };
-    let all = traced.iter().map(one).collect::<Vec<_>>().join("; ");
-    html! { @if !traced.is_empty() { p.caption { code { (TRACED) } ", by points: " (all) "." } } }
+    let captions = grouped(traced, |candidate| candidate.run.implementation.label()).into_iter();
+    let captions = captions.map(|(label, runs)| (label, runs.iter().map(one).collect::<Vec<_>>().join("; ")));
+    html! { @for (label, all) in captions { p.caption { code { (label) } ", by points: " (all) "." } } }
 }
 
 fn lines(page: &Page<'_>, candidates: &[Candidate<'_>], exact: bool) -> Vec<Line> {

@@ -1,6 +1,6 @@
 //! Every scene, by every method.
 
-use super::{Suite, UserInputs, aliasing, every, inputs, lowpass, plan};
+use super::{Suite, UserInputs, aliasing, every, inputs, lowpass, plan, triangle_renderer};
 use crate::bench::place::{Move, Place};
 use crate::bench::plan::{Measurements, Plan};
 use crate::bench::record::Experiment;
@@ -52,7 +52,8 @@ fn densities(scene: &str) -> Vec<Plan> {
         let float64_error = points <= MIDDLE;
         plan.measurements = Measurements { terms: true, float64_error, images, ..Measurements::BOTH };
         let others = Measurements { images: images && scene == "scene:bumpy-sphere", ..Measurements::BOTH };
-        every(&plan, &Method::ALL, others)
+        let triangles = (points == MIDDLE).then(|| triangle_renderer(&plan));
+        every(&plan, &Method::ALL, others).into_iter().chain(triangles).collect::<Vec<_>>()
     };
     let shadings = [Shading::Lit, Shading::Colour];
     POINTS.into_iter().flat_map(|points| shadings.map(|shading| (points, shading))).flat_map(each).collect()

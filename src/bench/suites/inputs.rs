@@ -1,7 +1,7 @@
 //! Inputs of the user.
 
-use super::{Suite, every, plan};
-use crate::bench::engine::Engine;
+use super::{Suite, every, plan, triangle_renderer};
+use crate::bench::engine::{Engine, TracedFilter};
 use crate::bench::papers::models::Models;
 use crate::bench::plan::{Measurements, Plan};
 use crate::bench::record::Experiment;
@@ -95,9 +95,11 @@ fn budget(mut plan: Plan, subject: &Subject, methods: &[Method], images: bool) -
     let mut plans = every(&plan, methods, others);
     if !known {
         // Points of one pixel have no reference of their own, and there is nothing to trace.
-        plans.retain(|plan| plan.engine != Engine::Traced);
+        plans.retain(|plan| plan.engine != Engine::Traced(TracedFilter::Truth));
         let pixels = plans.iter_mut().filter(|plan| plan.engine == Engine::Baseline(Kind::Pixels));
         pixels.for_each(|plan| plan.measurements = Measurements::TIME);
+    } else {
+        plans.push(triangle_renderer(&plan));
     }
     plans
 }

@@ -16,7 +16,7 @@ mod scaling;
 
 pub use inputs::UserInputs;
 
-use super::engine::Engine;
+use super::engine::{Engine, TracedFilter};
 use super::place::Place;
 use super::plan::{Measurements, Plan};
 use super::record::Experiment;
@@ -152,10 +152,17 @@ fn every(plan: &Plan, methods: &[Method], others: Measurements) -> Vec<Plan> {
 
 /// Time and error of every baseline. Ray tracing takes seconds a frame: the one that is compared is timed.
 fn baselines(plan: &Plan) -> [Plan; 3] {
-    [Engine::Baseline(Kind::Splats), Engine::Baseline(Kind::Pixels), Engine::Traced].map(|engine| {
-        let measurements = Measurements { time: engine != Engine::Traced, ..Measurements::BOTH };
+    let traced = Engine::Traced(TracedFilter::Truth);
+    [Engine::Baseline(Kind::Splats), Engine::Baseline(Kind::Pixels), traced].map(|engine| {
+        let measurements = Measurements { time: engine != traced, ..Measurements::BOTH };
         Plan { measurements, ..plan.by_engine(engine) }
     })
+}
+
+/// The error of the plan's surface, or of triangles between its points, in a triangle renderer with 16 samples a pixel.
+fn triangle_renderer(plan: &Plan) -> Plan {
+    let measurements = Measurements { time: false, ..Measurements::BOTH };
+    Plan { measurements, ..plan.by_engine(Engine::Traced(TracedFilter::Box)) }
 }
 
 /// The same plan by the CPU baseline.
