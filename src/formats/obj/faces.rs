@@ -1,5 +1,6 @@
 //! Faces, and the normals of their corners.
 
+use super::paint::{Painting, Places};
 use super::survey::{self, keyword};
 use crate::formats::meter::Meter;
 use crate::formats::quoted::quoted;
@@ -18,26 +19,29 @@ pub struct Found {
     pub faces: Faces,
     /// A normal of each point, or 0; `None` if no corner names one.
     pub normals: Option<Vec<Vec3>>,
+    /// Where the points' colours come from.
+    pub painting: Painting,
 }
 
-/// Vertices and normals before a line, from which numbers below 0 count.
+/// Vertices, normals and texture coordinates before a line, from which numbers below 0 count.
 #[derive(Clone, Copy, Default)]
 struct Before {
     vertices: u64,
     normals: u64,
+    coordinates: u64,
 }
 
-/// Reads the faces; a corner's normal is one of `normals`.
+/// Reads the faces; a corner's normal is one of `normals`, and its texture coordinates are one of those of `places`.
 pub fn read(
     source: &Source,
     pieces: &[Piece],
     points: &Points,
-    normals: &[Vec3],
+    (normals, mut places): (&[Vec3], Places),
     meter: &Meter,
 ) -> Parsed<Found> {
     let mut collector = Collector::new(points, true);
     let mut corners = Corners::new(points, normals)?;
-    let (mut before, mut buffer, mut face) = (Before::default(), Vec::new(), Vec::new());
+    let (mut before, mut buffer, mut face) = (Before::default(), Vec::new(), Face::default());
     for piece in pieces {
         let bytes = source.view(piece.start, piece.length, &mut buffer)?;
         for (line, number) in lines::of(bytes).zip(piece.line..) {
@@ -46,16 +50,32 @@ pub fn read(
                 before.vertices += 1;
             } else if word == survey::NORMAL.as_bytes() {
                 before.normals += 1;
+            } else if word == survey::TEXTURE.as_bytes() {
+                before.coordinates += 1;
+            } else if word == survey::USED_MATERIAL.as_bytes() {
+                places.set_material(values.trim_ascii());
             } else if word == survey::FACE.as_bytes() {
-                face.clear();
+                face.vertices.clear();
+                face.coordinates.clear();
                 corners.read(values, before, &mut face).map_err(|cause| format!("line {number}: {cause}"))?;
-                collector.face(&face);
+                places.face(&face.vertices, &face.coordinates);
+                collector.face(&face.vertices);
             }
         }
         meter.add(bytes.len() as u64)?;
     }
     let normals = corners.finish();
-    Ok(Found { triangles: collector.triangles, faces: collector.faces, normals })
+    let painting = places.finish();
+    Ok(Found { triangles: collector.triangles, faces: collector.faces, normals, painting })
+}
+
+/// The corners of a face.
+#[derive(Default)]
+struct Face {
+    /// Indices from 0, of which some may not exist.
+    vertices: Vec<f64>,
+    /// Likewise.
+    coordinates: Vec<Option<i64>>,
 }
 
 /// Normals of the points, from the corners of faces.
@@ -72,17 +92,18 @@ impl<'a> Corners<'a> {
         Ok(Self { points, normals, of: room(count as u64)? })
     }
 
-    /// Reads the corners of a face: vertices from 0, of which some may not exist.
-    fn read(&mut self, values: &[u8], before: Before, face: &mut Vec<f64>) -> Parsed<()> {
+    /// Reads the corners of a face.
+    fn read(&mut self, values: &[u8], before: Before, face: &mut Face) -> Parsed<()> {
         for cell in values.split(u8::is_ascii_whitespace).filter(|cell| !cell.is_empty()) {
-            let (vertex, normal) = corner(cell).ok_or_else(|| {
+            let (vertex, coordinates, normal) = corner(cell).ok_or_else(|| {
                 format!("{} is not the corner of a face: write the file again", quoted(cell))
             })?;
             let vertex = index(vertex, before.vertices);
             let named = normal.map(|number| index(number, before.normals));
             let normal = named.and_then(|index| self.normals.get(usize::try_from(index).ok()?)).copied();
             self.give(vertex as f64, normal.unwrap_or_default());
-            face.push(vertex as f64);
+            face.vertices.push(vertex as f64);
+            face.coordinates.push(coordinates.map(|number| index(number, before.coordinates)));
         }
         Ok(())
     }
@@ -105,8 +126,8 @@ impl<'a> Corners<'a> {
     }
 }
 
-/// The numbers of vertex and normal of a corner, written v, v/vt, v/vt/vn or v//vn.
-fn corner(cell: &[u8]) -> Option<(i64, Option<i64>)> {
+/// The numbers of vertex, texture coordinates and normal of a corner, written v, v/vt, v/vt/vn or v//vn.
+fn corner(cell: &[u8]) -> Option<(i64, Option<i64>, Option<i64>)> {
     let text = std::str::from_utf8(cell).ok()?;
     let mut numbers = text.split('/');
     let vertex = numbers.next()?.parse().ok()?;
@@ -114,8 +135,8 @@ fn corner(cell: &[u8]) -> Option<(i64, Option<i64>)> {
         None | Some("") => Some(None),
         Some(number) => Some(Some(number.parse().ok()?)),
     };
-    let (_, normal): (Option<i64>, _) = (optional()?, optional()?);
-    numbers.next().is_none().then_some((vertex, normal))
+    let (coordinates, normal) = (optional()?, optional()?);
+    numbers.next().is_none().then_some((vertex, coordinates, normal))
 }
 
 /// The index from 0 of a number from 1, or backwards from −1; one that does not exist is below 0 or too large.

@@ -1,4 +1,4 @@
-//! OBJ reader (Wavefront): vertices, with colours if they have any, normals, and faces.
+//! OBJ reader (Wavefront): vertices, with colours if they have any, normals, and faces, whose textures colour their vertices.
 //!
 //! | line | becomes |
 //! |---|---|
@@ -6,13 +6,18 @@
 //! | `v x y z r g b`, `v x y z r g b a` | the same, and a colour, sRGB-encoded: whole numbers to 255 or 65535, or fractions to 1 in all vertices. Vertices without one beside others get the default albedo |
 //! | `vn x y z` | the normal of the vertices whose corners name it. A vertex with corners of different normals has none: its faces give it one. Without such corners, of as many normals as vertices each is that of the vertex with its number |
 //! | `f v/vt/vn …` | a polygon, as a fan of triangles; numbers below 0 count backwards |
+//! | `vt u v` | texture coordinates: a vertex has the colour that the texture has at the first of its corners with some |
+//! | `mtllib FILE…` | the materials, beside the file: see `materials` |
+//! | `usemtl NAME` | the material of the faces after it |
 //! | `p …` | points, as all vertices are |
 //!
-//! All other lines are skipped and counted by their keyword. Texture coordinates are those of corners and are not read.
+//! All other lines are skipped and counted by their keyword.
 //!
 //! Source: Wavefront Technologies, Advanced Visualizer manual, appendix B1.
 
 mod faces;
+mod materials;
+mod paint;
 mod survey;
 #[cfg(test)]
 mod tests;
@@ -28,6 +33,8 @@ use super::text::rows;
 use super::{Faces, Inspected, Loaded, ReadOptions, Report};
 use crate::Progress;
 use crate::error::Cause;
+use paint::{Painting, Places};
+use std::path::Path;
 use survey::Survey;
 
 /// The OBJ format.
@@ -61,7 +68,9 @@ impl Reader for Obj {
             lines::survey(source, 0, 1, survey::look, &meter)?.into_iter().unzip();
         let survey = surveys.into_iter().fold(Survey::default(), Survey::merge);
         let elements = elements(&survey);
-        let file = File { source, pieces: &pieces, survey: &survey, elements: &elements, meter: &meter };
+        let folder = input.folder;
+        let file =
+            File { source, folder, pieces: &pieces, survey: &survey, elements: &elements, meter: &meter };
         let loaded = file.load(options);
         Ok(Inspected { format: self.name(), encoding: Encoding::Ascii, elements, loaded })
     }
@@ -77,6 +86,7 @@ fn elements(survey: &Survey) -> Vec<Element> {
     let others = survey.others().map(|(name, count)| {
         let properties = match name {
             survey::NORMAL => scalars(&["nx", "ny", "nz"], Scalar::F64),
+            survey::TEXTURE => scalars(&["u", "v"], Scalar::F64),
             survey::FACE | survey::POINT => vec![Property { name: "vertex_indices".into(), kind: list() }],
             _ => Vec::new(),
         };
@@ -93,6 +103,7 @@ fn elements(survey: &Survey) -> Vec<Element> {
 /// A file whose lines are counted.
 struct File<'a> {
     source: &'a Source<'a>,
+    folder: Option<&'a Path>,
     pieces: &'a [Piece],
     survey: &'a Survey,
     elements: &'a [Element],
@@ -108,33 +119,37 @@ impl File<'_> {
         let (arrays, tally) =
             rows::read(self.source, self.pieces, vertices::SYNTAX, &layout, finish, self.meter)?;
         let mut points = Points::new(arrays, tally, &layout)?;
-        let faces = self.read_others(&mut points)?;
+        let (faces, painting) = self.read_others(&mut points, options)?;
+        let files = (self.folder, &self.survey.materials[..]);
+        let texture_missing = painting.apply(&mut points, files, options.texture.as_ref());
         self.meter.finish();
+        let textured = [survey::TEXTURE, survey::MATERIALS, survey::USED_MATERIAL];
         let used = [survey::VERTEX, survey::NORMAL, survey::FACE, survey::POINT];
-        let skipped = self.elements.iter().filter(|element| !used.contains(&element.name.as_str()));
-        let untextured = self.survey.is_textured().then(|| {
-            "texture coordinates of faces' corners are not read: bake the texture into the colours of the vertices".into()
-        });
+        let is_used = |name: &str| used.contains(&name) || textured.contains(&name);
+        let skipped = self.elements.iter().filter(|element| !is_used(&element.name));
         let attributes = points.take_attributes(vertices, &layout);
         let report = Report {
             elements: self.elements.to_vec(),
             skipped_elements: skipped.map(|element| element.name.clone()).collect(),
             faces,
-            texture_missing: untextured,
+            texture_missing,
             ..Report::of_points(Encoding::Ascii, vertices, &layout, &points)
         };
         Ok(Loaded { cloud: points.cloud, report, attributes })
     }
 
-    /// Gives the points their normals and triangles.
-    fn read_others(&self, points: &mut Points) -> Parsed<Faces> {
+    /// Gives the points their normals and triangles; returns where their colours come from, too.
+    fn read_others(&self, points: &mut Points, options: &ReadOptions) -> Parsed<(Faces, Painting)> {
         if self.survey.faces == 0 && self.survey.normals == 0 {
-            return Ok(Faces::default());
+            return Ok(Default::default());
         }
         let normals = vertices::normals(self.source, self.pieces)?;
-        let found = faces::read(self.source, self.pieces, points, &normals, self.meter)?;
+        let coordinates = vertices::coordinates(self.source, self.pieces)?;
+        let is_painted = !self.survey.materials.is_empty() || options.texture.is_some();
+        let places = Places::new(points, &coordinates, is_painted)?;
+        let found = faces::read(self.source, self.pieces, points, (&normals, places), self.meter)?;
         points.cloud.triangles = found.triangles;
         points.cloud.normals = found.normals.or_else(|| vertices::in_order(points, &normals));
-        Ok(found.faces)
+        Ok((found.faces, found.painting))
     }
 }

@@ -14,13 +14,15 @@ pub const FACE: &str = "f";
 /// Keyword of points.
 pub const POINT: &str = "p";
 /// Keyword of texture coordinates.
-const TEXTURE: &str = "vt";
+pub const TEXTURE: &str = "vt";
 /// Keyword of files of materials, which name textures.
-const MATERIALS: &str = "mtllib";
+pub const MATERIALS: &str = "mtllib";
+/// Keyword of the material of the faces after it.
+pub const USED_MATERIAL: &str = "usemtl";
 
 /// Keywords that are known; all others count as one.
 const OTHERS: [&str; 13] =
-    [NORMAL, FACE, POINT, TEXTURE, MATERIALS, "vp", "l", "o", "g", "s", "usemtl", "usemap", "fo"];
+    [NORMAL, FACE, POINT, TEXTURE, MATERIALS, "vp", "l", "o", "g", "s", USED_MATERIAL, "usemap", "fo"];
 
 /// Name of all lines with other keywords.
 const UNKNOWN: &str = "other";
@@ -31,6 +33,8 @@ pub struct Survey {
     pub vertices: u64,
     pub normals: u64,
     pub faces: u64,
+    /// Values of the lines that name files of materials.
+    pub materials: Vec<Vec<u8>>,
     others: BTreeMap<&'static str, u64>,
     /// Largest channel of a colour; `None` if no vertex has one.
     largest: Option<f64>,
@@ -62,6 +66,9 @@ pub fn look(bytes: &[u8]) -> (usize, Survey) {
             survey.largest = larger(survey.largest, vertices::largest_channel(values));
             continue;
         }
+        if word == MATERIALS.as_bytes() {
+            survey.materials.push(values.trim_ascii().to_vec());
+        }
         let known = OTHERS.iter().find(|known| known.as_bytes() == word);
         *survey.others.entry(known.copied().unwrap_or(UNKNOWN)).or_default() += 1;
     }
@@ -80,6 +87,7 @@ fn larger(a: Option<f64>, b: Option<f64>) -> Option<f64> {
 impl Survey {
     /// The sum of two pieces.
     pub fn merge(mut self, other: Self) -> Self {
+        self.materials.extend(other.materials);
         other.others.iter().for_each(|(word, count)| *self.others.entry(word).or_default() += count);
         Self {
             vertices: self.vertices + other.vertices,
@@ -98,10 +106,5 @@ impl Survey {
     /// Type of the colours, and the factor of the channels.
     pub fn colour(&self) -> Option<(Scalar, f64)> {
         self.largest.map(columns::colour)
-    }
-
-    /// Whether the faces have a texture.
-    pub fn is_textured(&self) -> bool {
-        [TEXTURE, MATERIALS].iter().all(|word| self.others.contains_key(word))
     }
 }

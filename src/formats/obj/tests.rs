@@ -1,10 +1,13 @@
 //! Models from text, and damage.
 
 use super::*;
-use crate::formats::read_bytes;
+use crate::Picture;
+use crate::formats::image::{Output, write_png};
+use crate::formats::{self, read_bytes};
 use crate::geometry::{Colours, srgb};
-use crate::settings::Lighting;
+use crate::settings::{Lighting, Shading};
 use glam::{DVec3, Vec3};
+use std::path::Path;
 
 fn read(text: &str) -> crate::Result<Loaded> {
     read_bytes("a.obj", text.as_bytes(), &ReadOptions::default())
@@ -50,8 +53,8 @@ fn polygons_become_triangles_with_numbers_from_the_front_or_the_back() {
     let Loaded { cloud, report, .. } = read(&text).unwrap();
     assert_eq!(cloud.triangles, [[0, 1, 2], [0, 2, 3], [0, 1, 4]]);
     assert_eq!((report.faces.understood, report.faces.skipped), (2, 3));
-    assert_eq!(report.skipped_elements, ["mtllib", "vt"]);
-    assert!(report.texture_missing.is_some_and(|text| text.contains("bake")));
+    assert_eq!(report.skipped_elements, [""; 0]);
+    assert!(report.texture_missing.is_some_and(|text| text.contains("beside a file")));
     let windows = read(&text.replace('\n', "\r\n")).unwrap();
     assert_eq!(windows.cloud, cloud);
 }
@@ -100,4 +103,54 @@ fn faults_are_named_with_their_lines() {
     // Corners of such numbers do not exist.
     let far = read(&format!("{SQUARE}f 1 2 9223372036854775807\nf 1 2 -9223372036854775808\n")).unwrap();
     assert_eq!(far.report.faces.skipped, 2);
+}
+
+/// A square whose corners have the texture coordinates 1, 2, 3, 4, of a texture of two texels: red on the left, blue on the right.
+fn textured_square(folder: &Path, materials: &str, faces: &str) -> Loaded {
+    let red_and_blue = |k: usize| if k == 0 { [1.0, 0.0, 0.0, 1.0] } else { [0.0, 0.0, 1.0, 1.0] };
+    let picture =
+        Picture { size: [2, 1], colour: vec![red_and_blue(0), red_and_blue(1)], ..Default::default() };
+    let image = Output::File(folder.join("a b.png"));
+    write_png(&picture, Shading::Colour, &image).unwrap();
+    std::fs::write(folder.join("a.mtl"), materials).unwrap();
+    let coordinates = "vt 0.25 0.5\nvt 0.75 0.5\nvt 0.75 0.5 0\nvt 0.25 0.5\n";
+    let text = format!("mtllib a.mtl\n{SQUARE}v 5 5 5\nv 6 5 5\n{coordinates}{faces}");
+    let path = folder.join("a.obj");
+    std::fs::write(&path, text).unwrap();
+    formats::read(&path, &ReadOptions::default(), &()).unwrap()
+}
+
+fn codes(loaded: &Loaded) -> Vec<[u8; 3]> {
+    let Some(Colours::Srgb8(codes)) = &loaded.cloud.colours else { panic!("no colours") };
+    codes.iter().map(|&[r, g, b, _]| [r, g, b]).collect()
+}
+
+#[test]
+fn vertices_have_the_colours_of_their_textures_and_materials() {
+    let folder = tempfile::tempdir().unwrap();
+    let materials = "newmtl a\nmap_Kd a b.png\nnewmtl b\nKd 0 1 0\n";
+    // The second face names vertices of the first, which keep their colour, and one without coordinates.
+    let faces = "usemtl a\nf 1/1 2/2 3/3 4/-1\nusemtl b\nf 1 2 5\nusemtl c\nf 1 2 6\n";
+    let loaded = textured_square(folder.path(), materials, faces);
+    let albedo = Lighting::default().albedo.map(srgb::encode8);
+    let (red, blue, green) = ([255, 0, 0], [0, 0, 255], [0, 255, 0]);
+    assert_eq!(codes(&loaded), [red, blue, blue, red, green, albedo]);
+    assert_eq!((loaded.report.texture_missing, loaded.report.skipped_elements), (None, vec![]));
+}
+
+#[test]
+fn a_missing_texture_is_named_and_leaves_the_other_colours() {
+    let folder = tempfile::tempdir().unwrap();
+    let materials = "newmtl a\nKd 1 1 0\nmap_Kd none.png\nnewmtl b\nKd 0 1 0\n";
+    let loaded = textured_square(folder.path(), materials, "usemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 4 5 6\n");
+    let (yellow, green) = ([255, 255, 0], [0, 255, 0]);
+    assert_eq!(codes(&loaded), [yellow, yellow, yellow, green, green, green]);
+    assert!(loaded.report.texture_missing.unwrap().contains("none.png"));
+    // A single colour of all faces says no more than the default albedo.
+    let plain = textured_square(folder.path(), "newmtl b\nKd 0 1 0\n", "usemtl b\nf 1 2 3\n");
+    assert_eq!((plain.cloud.colours, plain.report.texture_missing), (None, None));
+    std::fs::remove_file(folder.path().join("a.mtl")).unwrap();
+    let path = folder.path().join("a.obj");
+    let without = formats::read(&path, &ReadOptions::default(), &()).unwrap();
+    assert!(without.report.texture_missing.unwrap().contains("a.mtl") && without.cloud.colours.is_none());
 }

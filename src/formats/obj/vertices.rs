@@ -11,7 +11,7 @@ use crate::formats::text::lines::{self, Piece};
 use crate::formats::text::rows::Syntax;
 use crate::geometry::srgb;
 use crate::settings::Lighting;
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 
 /// Lines of vertices: x y z, and r g b or none.
@@ -69,16 +69,45 @@ pub fn finish(column: usize, colour: Option<(Scalar, f64)>, values: &mut [f64]) 
 
 /// All normals, in file order: unit vectors or 0.
 pub fn normals(source: &Source, pieces: &[Piece]) -> Parsed<Vec<Vec3>> {
-    let of = |buffer: &mut Vec<u8>, piece: &Piece| -> Parsed<Vec<Vec3>> {
+    all(source, pieces, survey::NORMAL, normal)
+}
+
+/// All texture coordinates, in file order.
+pub fn coordinates(source: &Source, pieces: &[Piece]) -> Parsed<Vec<Vec2>> {
+    all(source, pieces, survey::TEXTURE, coordinate)
+}
+
+/// The values of all lines with a keyword, in file order.
+fn all<T: Clone + Send>(
+    source: &Source,
+    pieces: &[Piece],
+    word: &str,
+    parse: fn(&[u8]) -> Parsed<T>,
+) -> Parsed<Vec<T>> {
+    let of = |buffer: &mut Vec<u8>, piece: &Piece| -> Parsed<Vec<T>> {
         let lines = lines::of(source.view(piece.start, piece.length, buffer)?).zip(piece.line..);
-        let normal = |(line, place): (&[u8], u64)| {
-            let (_, values) = keyword(line).filter(|(word, _)| *word == survey::NORMAL.as_bytes())?;
-            Some(normal(values).map_err(|cause| format!("line {place}: {cause}").into()))
+        let one = |(line, place): (&[u8], u64)| {
+            let (_, values) = keyword(line).filter(|(own, _)| *own == word.as_bytes())?;
+            Some(parse(values).map_err(|cause| format!("line {place}: {cause}").into()))
         };
-        lines.filter_map(normal).collect()
+        lines.filter_map(one).collect()
     };
-    let all: Parsed<Vec<Vec<Vec3>>> = pieces.par_iter().map_init(Vec::new, of).collect();
+    let all: Parsed<Vec<Vec<T>>> = pieces.par_iter().map_init(Vec::new, of).collect();
     Ok(all?.concat())
+}
+
+/// Of up to three coordinates the first two; one is along the other's origin.
+fn coordinate(values: &[u8]) -> Parsed<Vec2> {
+    let numbers: Vec<f64> = cells(values).map(value).collect::<Parsed<_>>()?;
+    match numbers[..] {
+        [u] => Ok(DVec2::new(u, 0.0).as_vec2()),
+        [u, v] | [u, v, _] => Ok(DVec2::new(u, v).as_vec2()),
+        _ => Err(format!(
+            "texture coordinates of {} numbers: they are u, v and w; write the file again",
+            numbers.len()
+        )
+        .into()),
+    }
 }
 
 fn normal(values: &[u8]) -> Parsed<Vec3> {
