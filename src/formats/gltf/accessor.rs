@@ -42,6 +42,12 @@ impl<'a> Contents<'a> {
         self.read(accessor, widths).map_err(named)
     }
 
+    /// The bytes of a buffer view.
+    pub fn view(&self, view: u32) -> Parsed<&'a [u8]> {
+        let length = self.document.buffer_views.get(view as usize).map_or(0, |view| view.byte_length);
+        Ok(self.strided(view, 0, length, 1)?.bytes)
+    }
+
     fn read(&self, accessor: &Accessor, widths: &[usize]) -> Parsed<Numbers<'a>> {
         let kind = accessor.component_type;
         let scalar = component(kind)

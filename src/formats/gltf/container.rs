@@ -121,7 +121,7 @@ pub fn buffers<'a>(input: &'a Input<'_>, document: &Document) -> Parsed<Vec<Cow<
 }
 
 /// The first `length` bytes that a URI names, fewer if there are no more.
-fn of_uri<'a>(uri: &str, length: u64, folder: Option<&Path>) -> Parsed<Cow<'a, [u8]>> {
+pub fn of_uri<'a>(uri: &str, length: u64, folder: Option<&Path>) -> Parsed<Cow<'a, [u8]>> {
     if let Some(data) = uri.strip_prefix("data:") {
         let text = data.split_once(";base64,").map(|(_, text)| text);
         let text = text.ok_or("its data is not base64: write it again")?;

@@ -8,8 +8,9 @@
 //! | `POSITION` | position; integers are those of KHR_mesh_quantization |
 //! | `NORMAL` | normal, of any length |
 //! | `COLOR_0` | colour, linear light, times the material's `baseColorFactor` |
+//! | `TEXCOORD_0`, `TEXCOORD_1` | the colour of the material's `baseColorTexture` there, a factor as well; with KHR_texture_transform |
 //!
-//! Lines, textures, morph targets and skins are not read. A required extension that changes the geometry is an error.
+//! Lines, other textures, morph targets and skins are not read. A required extension that changes the geometry is an error.
 //!
 //! The schema is the engine's own, because that of the crate `gltf` rounds the transformations of nodes to f32.
 //!
@@ -22,6 +23,7 @@ mod scene;
 mod schema;
 #[cfg(test)]
 mod tests;
+mod texture;
 
 use super::declared::{Element, Encoding, Kind, Property, Scalar};
 use super::meter::Meter;
@@ -36,6 +38,7 @@ use accessor::Contents;
 use glam::DVec3;
 use part::{Part, Parts};
 use schema::Document;
+use texture::Textures;
 
 /// The glTF format.
 pub(super) struct Gltf;
@@ -68,8 +71,9 @@ impl Reader for Gltf {
         scene::check_extensions(&document)?;
         let buffers = container::buffers(input, &document)?;
         let contents = Contents { document: &document, buffers: &buffers };
-        let parts = Parts::of(&contents, &scene::primitives(&document)?)?;
-        let model = Model::of(&document, parts);
+        let mut textures = Textures::new(&contents, input.folder, options.texture.as_ref());
+        let parts = Parts::of(&contents, &scene::primitives(&document)?, &mut textures)?;
+        let model = Model::of(&document, parts, textures.missing.take());
         let loaded = model.load(options, progress);
         Ok(Inspected {
             format: self.name(),
@@ -88,10 +92,12 @@ struct Model<'a> {
     elements: Vec<Element>,
     /// Which value of a vertex each property is.
     slots: Vec<usize>,
+    /// Why a texture is missing.
+    texture_missing: Option<String>,
 }
 
 impl<'a> Model<'a> {
-    fn of(document: &'a Document, parts: Parts<'a>) -> Self {
+    fn of(document: &'a Document, parts: Parts<'a>, texture_missing: Option<String>) -> Self {
         let narrow = parts.all.iter().all(Part::is_narrow);
         let mut properties = Vec::new();
         let mut slots = Vec::new();
@@ -112,7 +118,7 @@ impl<'a> Model<'a> {
         if parts.lines > 0 {
             elements.push(element("lines", parts.lines, Vec::new()));
         }
-        Self { document, parts, elements, slots }
+        Self { document, parts, elements, slots, texture_missing }
     }
 
     fn load(&self, options: &ReadOptions, progress: &dyn Progress) -> Parsed<Loaded> {
@@ -123,7 +129,6 @@ impl<'a> Model<'a> {
         meter.finish();
         let (triangles, faces) = self.faces(&points, options);
         points.cloud.triangles = triangles;
-        let textured = self.document.materials.iter().any(|material| material.is_textured());
         let version = ("version", Some(&self.document.asset.version));
         let details = [version, ("generator", self.document.asset.generator.as_ref())];
         let detail = |(name, value): (&str, Option<&String>)| Some((name.to_owned(), on_one_line(value?)));
@@ -134,9 +139,7 @@ impl<'a> Model<'a> {
             elements: self.elements.clone(),
             skipped_elements: self.elements[1..].iter().map(|element| element.name.clone()).collect(),
             faces,
-            texture_missing: textured.then(|| {
-                "textures of glTF are not read: bake them into the colours of the vertices (COLOR_0)".into()
-            }),
+            texture_missing: self.texture_missing.clone(),
             ..Report::of_points(Encoding::BinaryLittleEndian, vertices, &layout, &points)
         };
         Ok(Loaded { cloud: points.cloud, report, attributes })

@@ -3,6 +3,7 @@
 use super::accessor::{Contents, Numbers};
 use super::scene::{Placed, missing, unsupported};
 use super::schema::{Attributes, Primitive};
+use super::texture::{Textures, Texturing};
 use crate::formats::declared::Scalar;
 use crate::formats::source::{Parsed, room};
 use crate::formats::table::Collector;
@@ -31,6 +32,7 @@ pub struct Part<'a> {
     position: Numbers<'a>,
     normal: Option<Numbers<'a>>,
     colour: Option<Numbers<'a>>,
+    texturing: Option<Texturing<'a>>,
     /// Linear factor of the colours.
     factor: [f64; 3],
     matrix: DMat4,
@@ -75,7 +77,7 @@ pub struct Parts<'a> {
 
 impl<'a> Parts<'a> {
     /// Collects the primitives: those of a node with the same attributes and material share their vertices.
-    pub fn of(contents: &Contents<'a>, placed: &[Placed]) -> Parsed<Self> {
+    pub fn of(contents: &Contents<'a>, placed: &[Placed], textures: &mut Textures<'a>) -> Parsed<Self> {
         let mut parts = Self { all: Vec::new(), lines: 0 };
         let mut known: HashMap<(u32, Attributes, Option<u32>), usize> = HashMap::new();
         let mut total = Total::default();
@@ -89,9 +91,9 @@ impl<'a> Parts<'a> {
             let index = match known.get(&key) {
                 Some(index) => *index,
                 None => {
-                    let part = Part::of(contents, primitive, *matrix)?;
-                    // Ranks and indices of the used vertices.
-                    total.add(part.position.count, 8)?;
+                    let part = Part::of(contents, primitive, *matrix, textures)?;
+                    // Ranks and indices of the used vertices, and steps of their texture coordinates.
+                    total.add(part.position.count, 16)?;
                     parts.all.push(part);
                     known.insert(key, parts.all.len() - 1);
                     parts.all.len() - 1
@@ -108,7 +110,10 @@ impl<'a> Parts<'a> {
             total.add(corners, 12)?;
             parts.all[index].primitives.push((mode, indices));
         }
-        parts.all.iter_mut().try_for_each(Part::find_used)?;
+        for part in &mut parts.all {
+            part.find_used()?;
+            part.find_steps();
+        }
         Ok(parts)
     }
 }
@@ -125,8 +130,13 @@ fn mode(primitive: &Primitive) -> Parsed<Mode> {
 }
 
 impl<'a> Part<'a> {
-    fn of(contents: &Contents<'a>, primitive: &Primitive, matrix: DMat4) -> Parsed<Self> {
-        let Attributes { position, normal, colour } = primitive.attributes;
+    fn of(
+        contents: &Contents<'a>,
+        primitive: &Primitive,
+        matrix: DMat4,
+        textures: &mut Textures<'a>,
+    ) -> Parsed<Self> {
+        let Attributes { position, normal, colour, .. } = primitive.attributes;
         let read = |index: u32, widths: &[usize]| {
             contents.numbers(index, widths).map_err(|cause| {
                 let compressed = primitive.extensions.keys().find(|name| name.ends_with("_compression"));
@@ -150,10 +160,12 @@ impl<'a> Part<'a> {
             ),
             None => None,
         };
+        let texturing = textures.of(primitive, material, position.count)?;
         Ok(Self {
             position,
             normal,
             colour,
+            texturing,
             factor: material.map_or([1.0; 3], |material| material.factor()),
             matrix,
             normal_matrix: DMat3::from_mat4(matrix).inverse().transpose(),
@@ -185,6 +197,20 @@ impl<'a> Part<'a> {
         Ok(())
     }
 
+    /// Finds how far the texture coordinates of the vertices are apart.
+    fn find_steps(&mut self) {
+        let (count, all) = (self.len(), self.position.count as u32);
+        let Some(mut texturing) = self.texturing.take() else { return };
+        for (mode, indices) in &self.primitives {
+            let run = if *mode == Mode::Triangles { 3 } else { 0 };
+            match indices {
+                Some(indices) => texturing.learn(indices.indices(), run, count, |index| self.corner(index)),
+                None => texturing.learn(0..all, run, count, |index| self.corner(index)),
+            }
+        }
+        self.texturing = Some(texturing);
+    }
+
     /// Number of vertices that are used.
     pub fn len(&self) -> usize {
         self.used.as_ref().map_or(self.position.count, |used| used.vertices.len())
@@ -195,7 +221,7 @@ impl<'a> Part<'a> {
     }
 
     pub fn has_colours(&self) -> bool {
-        self.colour.is_some() || self.factor != [1.0; 3]
+        self.colour.is_some() || self.texturing.is_some() || self.factor != [1.0; 3]
     }
 
     /// Whether f32 holds the positions exactly.
@@ -214,10 +240,13 @@ impl<'a> Part<'a> {
             .as_ref()
             .map_or(DVec3::ZERO, |normal| self.normal_matrix * DVec3::from(three(normal)));
         let colour = self.colour.as_ref().map_or([1.0; 3], three);
+        let texture = self.texturing.as_ref().map_or([1.0; 3], |texturing| texturing.colour(vertex, rank));
         let mut values = [0.0; VALUES];
         values[..3].copy_from_slice(&position);
         values[3..6].copy_from_slice(&normal.to_array());
-        (0..3).for_each(|channel| values[6 + channel] = colour[channel] * self.factor[channel]);
+        (0..3).for_each(|channel| {
+            values[6 + channel] = colour[channel] * texture[channel] * self.factor[channel]
+        });
         values
     }
 

@@ -3,7 +3,7 @@
 //! Transformations keep float64: geographic models have translations of millions of metres.
 
 use crate::formats::declared::Scalar;
-use glam::{DMat4, DQuat, DVec3};
+use glam::{DMat4, DQuat, DVec2, DVec3};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use std::collections::BTreeMap;
@@ -24,6 +24,10 @@ pub struct Document {
     pub meshes: Vec<Mesh>,
     #[serde(default)]
     pub materials: Vec<Material>,
+    #[serde(default)]
+    pub textures: Vec<Texture>,
+    #[serde(default)]
+    pub images: Vec<Image>,
     #[serde(default)]
     pub accessors: Vec<Accessor>,
     #[serde(default)]
@@ -80,6 +84,10 @@ pub struct Attributes {
     pub normal: Option<u32>,
     #[serde(rename = "COLOR_0")]
     pub colour: Option<u32>,
+    #[serde(rename = "TEXCOORD_0")]
+    coordinates_0: Option<u32>,
+    #[serde(rename = "TEXCOORD_1")]
+    coordinates_1: Option<u32>,
 }
 
 #[derive(Deserialize)]
@@ -92,7 +100,45 @@ pub struct Material {
 #[serde(rename_all = "camelCase")]
 struct Roughness {
     base_color_factor: Option<[f64; 4]>,
-    base_color_texture: Option<IgnoredAny>,
+    base_color_texture: Option<BaseColourTexture>,
+}
+
+/// A reference to a texture.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct BaseColourTexture {
+    pub index: u32,
+    #[serde(default)]
+    tex_coord: u32,
+    #[serde(default)]
+    extensions: TextureExtensions,
+}
+
+#[derive(Default, Deserialize)]
+struct TextureExtensions {
+    #[serde(rename = "KHR_texture_transform")]
+    transform: Option<TextureTransform>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct TextureTransform {
+    offset: Option<[f64; 2]>,
+    rotation: Option<f64>,
+    scale: Option<[f64; 2]>,
+    tex_coord: Option<u32>,
+}
+
+#[derive(Deserialize)]
+pub struct Texture {
+    pub source: Option<u32>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Image {
+    pub uri: Option<String>,
+    pub buffer_view: Option<u32>,
 }
 
 #[derive(Deserialize)]
@@ -170,8 +216,43 @@ impl Material {
         factor.map_or([1.0; 3], |[red, green, blue, _]| [red, green, blue])
     }
 
-    pub fn is_textured(&self) -> bool {
-        self.pbr_metallic_roughness.as_ref().is_some_and(|own| own.base_color_texture.is_some())
+    pub fn texture(&self) -> Option<&BaseColourTexture> {
+        self.pbr_metallic_roughness.as_ref()?.base_color_texture.as_ref()
+    }
+}
+
+impl BaseColourTexture {
+    fn transform(&self) -> Option<&TextureTransform> {
+        self.extensions.transform.as_ref()
+    }
+
+    /// Set of the texture coordinates.
+    pub fn set(&self) -> u32 {
+        self.transform().and_then(|transform| transform.tex_coord).unwrap_or(self.tex_coord)
+    }
+
+    pub fn offset(&self) -> DVec2 {
+        self.transform().and_then(|transform| transform.offset).map_or(DVec2::ZERO, DVec2::from)
+    }
+
+    pub fn scale(&self) -> DVec2 {
+        self.transform().and_then(|transform| transform.scale).map_or(DVec2::ONE, DVec2::from)
+    }
+
+    /// Radians, from u to v.
+    pub fn rotation(&self) -> f64 {
+        self.transform().and_then(|transform| transform.rotation).unwrap_or_default()
+    }
+}
+
+impl Attributes {
+    /// The accessor of a set of texture coordinates.
+    pub fn coordinates(&self, set: u32) -> Option<u32> {
+        match set {
+            0 => self.coordinates_0,
+            1 => self.coordinates_1,
+            _ => None,
+        }
     }
 }
 

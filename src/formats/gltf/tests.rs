@@ -1,12 +1,16 @@
 //! Models from JSON and bytes, and damage.
 
 use super::*;
+use crate::Picture;
+use crate::formats::image::{Output, write_png};
 use crate::formats::{read, read_bytes};
 use crate::geometry::Colours;
+use crate::settings::Shading;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use glam::Vec3;
 use serde_json::{Value, json};
+use std::f64::consts::FRAC_PI_2;
 
 /// A binary file.
 fn binary(document: &Value, buffer: &[u8]) -> Vec<u8> {
@@ -336,4 +340,75 @@ fn cut_files_are_named() {
     );
     let text = read_bytes("a.gltf", b"{\"asset\": {\"version\": 2}}", &ReadOptions::default()).unwrap_err();
     assert!(text.to_string().contains("its description: invalid type"), "{text}");
+}
+
+/// A PNG of two texels: red on the left, blue on the right.
+fn red_and_blue() -> Vec<u8> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.png");
+    let colour = vec![[1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]];
+    let picture = Picture { size: [2, 1], colour, ..Default::default() };
+    write_png(&picture, Shading::Colour, &Output::File(path.clone())).unwrap();
+    std::fs::read(path).unwrap()
+}
+
+/// A square with the texture coordinates u = 1/4, 3/4, 1/4, 3/4, and this base colour texture.
+fn textured(texture: Value) -> (Value, Vec<u8>) {
+    let (positions, image) = (floats(&SQUARE), red_and_blue());
+    let coordinates = floats(&[0.25, 0.5, 0.75, 0.5, 0.25, 0.5, 0.75, 0.5]);
+    let indices = [0u8, 1, 2, 1, 3, 2];
+    let primitive = json!([{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "indices": 2, "material": 0}]);
+    let attributes: &Attributes = &[
+        (&positions, three(4)),
+        (&coordinates, json!({"componentType": 5126, "count": 4, "type": "VEC2"})),
+        (&indices, json!({"componentType": 5121, "count": 6, "type": "SCALAR"})),
+        (&image, json!({"componentType": 5121, "count": 0, "type": "SCALAR"})),
+    ];
+    let (mut document, buffer) = document(json!([{"mesh": 0}]), primitive, attributes);
+    document["materials"] =
+        json!([{"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 1, 1], "baseColorTexture": texture}}]);
+    document["textures"] = json!([{"source": 0}, {}]);
+    document["images"] = json!([{"bufferView": 3, "mimeType": "image/png"}]);
+    (document, buffer)
+}
+
+#[test]
+fn vertices_have_the_colours_of_base_colour_textures() {
+    let colours = |texture: Value| {
+        let (document, buffer) = textured(texture);
+        let Loaded { cloud, report, .. } = loaded(&document, &buffer).unwrap();
+        let Some(Colours::Linear(colours)) = cloud.colours else { panic!("no colours") };
+        (colours, report.texture_missing)
+    };
+    let (red, blue) = ([0.5, 0.0, 0.0], [0.0, 0.0, 1.0]);
+    assert_eq!(colours(json!({"index": 0})), (vec![red, blue, red, blue], None));
+    // Half a texture to the side.
+    let moved = json!({"index": 0, "extensions": {"KHR_texture_transform": {"offset": [0.5, 0]}}});
+    assert_eq!(colours(moved), (vec![blue, red, blue, red], None));
+    // A turn by 90° takes v to -u.
+    let transform = json!({"rotation": FRAC_PI_2, "offset": [0.75, 0]});
+    let turned = json!({"index": 0, "extensions": {"KHR_texture_transform": transform}});
+    let (found, missing) = colours(turned);
+    assert!(
+        missing.is_none() && found.iter().all(|own| Vec3::from(*own).abs_diff_eq(red.into(), 1e-6)),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn a_missing_texture_is_named_and_leaves_the_factor() {
+    let missing = |texture: Value, change: &dyn Fn(&mut Value)| {
+        let (mut document, buffer) = textured(texture);
+        change(&mut document);
+        let Loaded { cloud, report, .. } = loaded(&document, &buffer).unwrap();
+        assert_eq!(cloud.colours, Some(Colours::Linear(vec![[0.5, 0.5, 1.0]; 4])));
+        report.texture_missing.unwrap()
+    };
+    assert!(missing(json!({"index": 2}), &|_| ()).contains("texture 2: it does not exist"));
+    assert!(missing(json!({"index": 1}), &|_| ()).contains("no PNG or JPEG"));
+    assert!(missing(json!({"index": 0, "texCoord": 1}), &|_| ()).contains("TEXCOORD_1"));
+    let nowhere = |document: &mut Value| document["images"][0] = json!({"uri": "none.png"});
+    assert!(missing(json!({"index": 0}), &nowhere).contains("none.png"));
+    let no_image = |document: &mut Value| document["images"][0] = json!({"bufferView": 0});
+    assert!(missing(json!({"index": 0}), &no_image).contains("not a PNG, JPEG or EXR"));
 }

@@ -3,6 +3,8 @@
 mod exr;
 mod read;
 
+#[cfg(feature = "gltf")]
+pub(crate) use read::{MOST_BYTES, decode};
 pub use read::{MOST_PIXELS, read};
 
 use super::atomic;

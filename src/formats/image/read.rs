@@ -12,6 +12,10 @@ use std::path::Path;
 /// Maximum number of pixels of a picture: a gibibyte of colours.
 pub const MOST_PIXELS: u64 = 1 << 26;
 
+/// Maximum size of a picture's file that is named by another file, bytes.
+#[cfg(feature = "gltf")]
+pub const MOST_BYTES: u64 = 1 << 30;
+
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 const JPEG: &[u8] = &[0xff, 0xd8, 0xff];
 const EXR: &[u8] = &[0x76, 0x2f, 0x31, 0x01];
@@ -25,13 +29,17 @@ const EXR: &[u8] = &[0x76, 0x2f, 0x31, 0x01];
 /// [`Error::Io`] if the file cannot be read, [`Error::Input`] if it has another format, is damaged, or has more than [`MOST_PIXELS`].
 pub fn read(path: &Path) -> Result<Picture> {
     let bytes = beginning_as_picture(path).map_err(Error::io(path, "cannot read"))?;
-    let picture = match &bytes {
+    decode(&bytes).map_err(|cause: Cause| cause.in_input(path.display().to_string()))
+}
+
+/// The picture of the bytes of a file, as [`read`].
+pub fn decode(bytes: &[u8]) -> Result<Picture, Cause> {
+    match bytes {
         png if png.starts_with(PNG) => read_codes(png, ImageFormat::Png),
         jpeg if jpeg.starts_with(JPEG) => read_codes(jpeg, ImageFormat::Jpeg),
         exr if exr.starts_with(EXR) => exr::read(exr, MOST_PIXELS),
         _ => Err("not a PNG, JPEG or EXR file: convert it to one of these".into()),
-    };
-    picture.map_err(|cause: Cause| cause.in_input(path.display().to_string()))
+    }
 }
 
 /// The whole file if it begins as a picture; otherwise the beginning only, as the file may have no end.
