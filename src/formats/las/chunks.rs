@@ -6,6 +6,7 @@ use laz::laszip::ChunkTable;
 use laz::record::{LayeredPointRecordDecompressor, RecordDecompressor, SequentialPointRecordDecompressor};
 use laz::{DecompressionSelection, LazItem, LazItemType, LazVlr};
 use std::io::Cursor;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Consecutive compressed points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -154,6 +155,11 @@ fn rows(count: u64) -> Parsed<usize> {
     usize::try_from(count).map_err(|_| format!("{count} points in a chunk are too many").into())
 }
 
+/// The result of the decompressor, which panics for some damaged data: then `None`.
+pub fn checked<T>(run: impl FnOnce() -> T) -> Option<T> {
+    catch_unwind(AssertUnwindSafe(run)).ok()
+}
+
 /// Points and bytes of each chunk; the number of points is 0 if the table does not tell.
 fn table(header: &Header, source: &Source, variable: bool) -> Parsed<Vec<[u64; 2]>> {
     let missing = "it has no table of its compressed chunks: the file is truncated, or its writer did not finish; fetch or write it again";
@@ -176,9 +182,10 @@ fn table(header: &Header, source: &Source, variable: bool) -> Parsed<Vec<[u64; 2
         )
         .into());
     }
-    let table = ChunkTable::read(&mut Cursor::new(&*bytes), variable);
-    let table = table
-        .map_err(|error| format!("its table of compressed chunks is damaged ({error}): fetch it again"))?;
+    let damaged = |what: String| format!("its table of compressed chunks is damaged{what}: fetch it again");
+    let table = checked(|| ChunkTable::read(&mut Cursor::new(&*bytes), variable));
+    let table = table.ok_or_else(|| damaged(String::new()))?;
+    let table = table.map_err(|error| damaged(format!(" ({error})")))?;
     Ok(table.as_ref().iter().map(|entry| [entry.point_count, entry.byte_count]).collect())
 }
 

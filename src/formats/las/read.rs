@@ -1,6 +1,6 @@
 //! Reading of the points.
 
-use super::chunks::{Chunk, Chunks};
+use super::chunks::{Chunk, Chunks, checked};
 use super::fields::Field;
 use super::header::Header;
 use super::stored::Stored;
@@ -10,7 +10,6 @@ use crate::formats::source::{Parsed, Source};
 use crate::formats::table::binary::gather;
 use crate::formats::table::{Arrays, Layout, ROWS, Records, Rows, Tally, fill};
 use laz::DecompressionSelection as Selection;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// The points of a file, and what is requested of them.
 pub struct Table<'a> {
@@ -62,9 +61,8 @@ impl Table<'_> {
                 self.convert(records, &used, rows);
                 meter.add(chunk.length * (records.len() / self.header.stride) as u64 / chunk.rows as u64)
             };
-            // The decompressor may fail an assertion for damaged data.
-            let run = AssertUnwindSafe(|| chunks.decompress(chunk, bytes, ROWS, selection, convert));
-            catch_unwind(run).unwrap_or_else(|_| Err("its data are no points".into())).or_else(|cause| {
+            let done = checked(|| chunks.decompress(chunk, bytes, ROWS, selection, convert));
+            done.unwrap_or_else(|| Err("its data are no points".into())).or_else(|cause| {
                 meter.add(0)?;
                 Err(damaged(index, chunk, &cause.to_string()).into())
             })

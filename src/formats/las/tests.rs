@@ -313,3 +313,21 @@ fn classes_and_returns_are_selected() {
     let missing = read_bytes("a.xyz", b"1 2 3\n", &missing).unwrap_err().to_string();
     assert!(missing.contains("its points have no `classification`"), "{missing}");
 }
+
+/// The decoder of the table panics for some damage.
+#[test]
+fn a_damaged_table_of_chunks_is_an_error() {
+    let whole = bytes("octree.copc.laz");
+    let long = |at: usize| u64::from_le_bytes(std::array::from_fn(|byte| whole[at + byte])) as usize;
+    let start = u32::from_le_bytes(std::array::from_fn(|byte| whole[96 + byte])) as usize;
+    let table = long(start);
+    let mut refused = 0;
+    for at in table + 4..(table + 40).min(whole.len()) {
+        for value in [0, 1, 0x10, 0x2c, 0x7f, 0x80, 0xff] {
+            let mut damaged = whole.clone();
+            damaged[at] = value;
+            refused += u32::from(read_bytes("damaged.laz", &damaged, &ReadOptions::default()).is_err());
+        }
+    }
+    assert!(refused > 50, "{refused}");
+}
