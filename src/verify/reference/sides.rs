@@ -50,7 +50,7 @@ pub(super) fn pass(projector: &Projector, scene: ProjectedScene, size: [u32; 2])
         let is_hidden = |at| is_within(at, f64::NEG_INFINITY, own);
         let nearest = depth(-BEHIND_BESIDE * (unit * projector.pixel_width()).sqrt());
         // On the outline of the picture, triangles of a coarse mesh still face the eye where their normals face away.
-        let is_covered = is_within(centre, f64::NEG_INFINITY, f64::INFINITY);
+        let is_covered = depths[index(centre, size)].exists();
         is_covered && around(centre, 1, size).any(|at| is_within(at, nearest, own))
             || is_within(centre, f64::NEG_INFINITY, behind)
                 && (is_within(centre, depth(-BEHIND_CENTRE * unit), behind)
