@@ -145,9 +145,14 @@ fn a_scan_that_is_culled_from_behind_is_reported() {
     let program = Program::new();
     program.write("scan.ply", surfels(&["0 0 0 0 0 1 1", "1 0 0 0 0 1 1", "0 1 0 0 0 1 1", "1 1 0 0 0 1 1"]));
     let behind = "--eye 0.5,0.5,-4 --target 0.5,0.5,0";
-    for (options, is_reported) in
-        [("--method pull-push", true), ("--cull back", true), ("", false), ("--cull none", false)]
-    {
+    let cases = [
+        ("--method pull-push-paper", true),
+        ("--cull back", true),
+        ("", false),
+        ("--method pull-push", false),
+        ("--cull none", false),
+    ];
+    for (options, is_reported) in cases {
         let run =
             program.run(&format!("render scan.ply -o a.png --size 16x16 --reference {behind} {options}"));
         let reported = run.err.contains("100 % of the surfels face away") && run.err.contains("--cull none");
