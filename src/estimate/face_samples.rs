@@ -129,7 +129,12 @@ impl<'a> Mesh<'a> {
             corners,
             points: self.edges.points(i),
             normals: [0, 1, 2].map(|k| self.corner_normal(i, k, &fans[k])),
-            colours: self.draft.surfels.colours.as_ref().map(|of| corners.map(|corner| light(of, corner))),
+            colours: self
+                .draft
+                .surfels
+                .colours
+                .as_ref()
+                .map(|of| corners.map(|corner| of.light(corner as usize))),
             borders: ends.into_iter().filter(|_| self.outlines).filter_map(border).collect(),
             sides: (0..3).filter_map(|k| self.edges.border(i, k)).collect(),
             bend: bend.fold(0.0, f64::max),
@@ -204,21 +209,10 @@ impl<'a> Mesh<'a> {
     }
 }
 
-/// The colour of a point, linear light.
-fn light(colours: &Colours, i: u32) -> DVec3 {
-    DVec3::from_array(match colours {
-        Colours::Srgb8(codes) => {
-            let [r, g, b, _] = codes[i as usize];
-            [r, g, b].map(|code| srgb::decode(f64::from(code) / 255.0))
-        }
-        Colours::Linear(linear) => linear[i as usize].map(f64::from),
-    })
-}
-
 /// The mean colours of the corners, in linear light.
 fn mean_colours(colours: &Colours, samples: &[Sample]) -> Colours {
     let means = samples.iter().map(|sample| {
-        let corners = sample.corners.map(|corner| light(colours, corner));
+        let corners = sample.corners.map(|corner| colours.light(corner as usize));
         mix(&corners, sample.weights).to_array()
     });
     match colours {

@@ -48,6 +48,7 @@ mod spz;
 mod survey;
 mod table;
 mod text;
+mod texture;
 mod up;
 mod writer;
 

@@ -132,6 +132,14 @@ fn slice(bytes: &[u8], start: u64, length: u64) -> Parsed<&[u8]> {
         .ok_or_else(|| "the file ends early: fetch it again".into())
 }
 
+/// Returns an error for a device or a pipe, which may have no end, at a path that another file names.
+pub fn check_regular(path: &Path) -> Parsed<()> {
+    match path.exists() && !path.is_file() {
+        true => Err(format!("{}: no regular file", path.display()).into()),
+        false => Ok(()),
+    }
+}
+
 /// An array of zeros; pages that are never written cost nothing.
 pub fn room<T: bytemuck::Zeroable>(count: u64) -> Parsed<Vec<T>> {
     let zeros = usize::try_from(count).ok().and_then(|count| bytemuck::try_zeroed_vec(count).ok());

@@ -1,6 +1,6 @@
 //! Surfels: oriented discs that sample a surface.
 
-use super::{Clips, Curvature, Materials, Texture, Weights};
+use super::{Clips, Curvature, Materials, Texture, Weights, srgb};
 use crate::error::{Error, Result};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
@@ -69,6 +69,19 @@ pub enum Colours {
     Srgb8(Vec<[u8; 4]>),
     /// Linear light.
     Linear(Vec<[f32; 3]>),
+}
+
+impl Colours {
+    /// The colour of surfel `i`, linear light.
+    pub(crate) fn light(&self, i: usize) -> DVec3 {
+        match self {
+            Self::Linear(linear) => DVec3::from_array(linear[i].map(f64::from)),
+            Self::Srgb8(codes) => {
+                let [r, g, b, _] = codes[i].map(|code| srgb::decode(f64::from(code) / 255.0));
+                DVec3::new(r, g, b)
+            }
+        }
+    }
 }
 
 impl Surfels {

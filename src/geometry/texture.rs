@@ -158,20 +158,10 @@ impl MipMap {
         let texel = |dx: i64, dy: i64| {
             let [x, y] = [(corner.x as i64 + dx, size[0]), (corner.y as i64 + dy, size[1])]
                 .map(|(i, side)| i.rem_euclid(side.into()) as usize);
-            self.texel(first + y * size[0] as usize + x)
+            self.texels.light(first + y * size[0] as usize + x)
         };
         let row = |dy: i64| texel(0, dy).lerp(texel(1, dy), part.x);
         row(0).lerp(row(1), part.y)
-    }
-
-    fn texel(&self, i: usize) -> DVec3 {
-        match &self.texels {
-            Colours::Linear(linear) => Vec3::from(linear[i]).as_dvec3(),
-            Colours::Srgb8(codes) => {
-                let [r, g, b, _] = codes[i].map(|code| srgb::decode(f64::from(code) / 255.0));
-                DVec3::new(r, g, b)
-            }
-        }
     }
 }
 

@@ -3,7 +3,7 @@
 use super::schema::{Buffer, Document};
 use crate::formats::quoted::{on_one_line, quoted};
 use crate::formats::reader::Input;
-use crate::formats::source::{Parsed, Source};
+use crate::formats::source::{Parsed, Source, check_regular};
 use crate::geometry::memory;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -136,10 +136,7 @@ pub fn of_uri<'a>(uri: &str, length: u64, folder: Option<&Path>) -> Parsed<Cow<'
     let folder =
         folder.ok_or_else(|| format!("{shown} is another file: give a file with its buffers inside"))?;
     let path = folder.join(&name);
-    // The name comes from the file: a device or pipe may have no end.
-    if path.exists() && !path.is_file() {
-        return Err(format!("{}: no regular file", path.display()).into());
-    }
+    check_regular(&path)?;
     let source = Source::open(&path, |_| true).map_err(|error| error.to_string())?;
     let part = source.part(0, length.min(source.size()))?.into_owned();
     Ok(part.into())

@@ -9,17 +9,15 @@
 //! Source: Wavefront Technologies, Advanced Visualizer manual, MTL material format.
 
 use super::survey::keyword;
-use crate::formats::image;
-use crate::formats::source::Parsed;
+use crate::formats::source::{Parsed, check_regular};
 use crate::formats::table::text::number;
 use crate::formats::text::lines;
-use crate::geometry::{MipMap, srgb};
+use crate::geometry::srgb;
 use glam::DVec3;
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// Size of the largest file of materials, bytes.
 const LARGEST: u64 = 1 << 24;
@@ -36,8 +34,7 @@ pub struct Material {
 pub fn read(folder: &Path, files: &[Vec<u8>]) -> Parsed<HashMap<Vec<u8>, Material>> {
     let mut materials = HashMap::new();
     for path in files.iter().flat_map(|names| paths(folder, names)) {
-        let bytes = bytes(&path).map_err(|cause| format!("{}: {cause}", path.display()))?;
-        parse(&bytes, path.parent().unwrap_or(folder), &mut materials);
+        parse(&bytes(&path)?, path.parent().unwrap_or(folder), &mut materials);
     }
     Ok(materials)
 }
@@ -57,15 +54,16 @@ fn file_name(name: &[u8]) -> String {
     String::from_utf8_lossy(name.trim_ascii()).replace('\\', "/")
 }
 
-/// The contents of a regular file: a name in a file may be that of a device without an end.
 fn bytes(path: &Path) -> Parsed<Vec<u8>> {
-    if path.exists() && !path.is_file() {
-        return Err("no regular file".into());
-    }
+    check_regular(path)?;
+    let named = |cause: &str| format!("{}: {cause}", path.display());
     let mut bytes = Vec::new();
     let file = File::open(path).and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes));
-    file.map_err(|error| error.to_string())?;
-    if bytes.len() as u64 > LARGEST { Err("too large for materials".into()) } else { Ok(bytes) }
+    file.map_err(|error| named(&error.to_string()))?;
+    match bytes.len() as u64 > LARGEST {
+        true => Err(named("too large for materials: give one of 16 MiB at most").into()),
+        false => Ok(bytes),
+    }
 }
 
 fn parse(bytes: &[u8], folder: &Path, materials: &mut HashMap<Vec<u8>, Material>) {
@@ -122,15 +120,6 @@ fn without_options(values: &[u8]) -> Option<&[u8]> {
         rest = after.trim_ascii_start();
     }
     Some(rest).filter(|name| !name.is_empty())
-}
-
-/// The texture of a file.
-pub fn texture(path: &Path) -> Parsed<Arc<MipMap>> {
-    if path.exists() && !path.is_file() {
-        return Err(format!("{}: no regular file", path.display()).into());
-    }
-    let image = image::read(path).and_then(|picture| MipMap::new(&picture));
-    image.map(Arc::new).map_err(|error| error.to_string().into())
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use super::materials::{self, Material};
 use crate::formats::source::{Parsed, room};
 use crate::formats::table::Points;
+use crate::formats::texture;
 use crate::geometry::{Colours, MipMap, srgb};
 use crate::settings::Lighting;
 use glam::{DVec2, DVec3, Vec2};
@@ -118,7 +119,11 @@ impl Painting {
         let paints = self.paints(&materials, given, &mut missing);
         let without = given.map_or(Paint::Nothing, |given| Paint::Texture(given.clone()));
         let paint = |place: &Place| paints.get(place.material as usize).unwrap_or(&without);
-        let is_textured = self.places.iter().any(|place| matches!(paint(place), Paint::Texture(_)));
+        let has_texture = |place: &&Place| matches!(paint(place), Paint::Texture(_));
+        let is_textured = self.places.iter().filter(has_texture).any(|place| place.at.is_finite());
+        if !is_textured && self.places.iter().any(|place| has_texture(&place)) {
+            missing.get_or_insert("the corners of its faces have no texture coordinates (vt)".into());
+        }
         let mut plain: Vec<DVec3> = Vec::new();
         for paint in &paints {
             if let Paint::Plain(colour) = paint
@@ -140,7 +145,7 @@ impl Painting {
         missing: &mut Option<String>,
     ) -> Vec<Paint> {
         let mut textures: HashMap<PathBuf, Option<Arc<MipMap>>> = HashMap::new();
-        let mut load = |path: &PathBuf| match materials::texture(path) {
+        let mut load = |path: &PathBuf| match texture::read(path) {
             Ok(texture) => Some(texture),
             Err(cause) => {
                 missing.get_or_insert(cause.to_string());
@@ -165,13 +170,7 @@ impl Painting {
     /// the default albedo.
     fn colours<'p>(&self, points: &Points, paint: impl Fn(&Place) -> &'p Paint + Sync) -> Colours {
         let albedo = DVec3::from(Lighting::default().albedo.map(f64::from));
-        let own = |i: usize| match &points.cloud.colours {
-            Some(Colours::Srgb8(codes)) => {
-                DVec3::from([0, 1, 2].map(|k| srgb::decode(f64::from(codes[i][k]) / 255.0)))
-            }
-            Some(Colours::Linear(linear)) => DVec3::from(linear[i].map(f64::from)),
-            None => albedo,
-        };
+        let own = |i: usize| points.cloud.colours.as_ref().map_or(albedo, |colours| colours.light(i));
         let colour = |(i, place): (usize, &Place)| match paint(place) {
             Paint::Texture(texture) if place.at.is_finite() => {
                 let texels = place.step.as_dvec2() * DVec2::from(texture.level_size(0).map(f64::from));

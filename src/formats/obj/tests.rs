@@ -149,6 +149,8 @@ fn a_missing_texture_is_named_and_leaves_the_other_colours() {
     // A single colour of all faces says no more than the default albedo.
     let plain = textured_square(folder.path(), "newmtl b\nKd 0 1 0\n", "usemtl b\nf 1 2 3\n");
     assert_eq!((plain.cloud.colours, plain.report.texture_missing), (None, None));
+    let bare = textured_square(folder.path(), "newmtl a\nmap_Kd a b.png\n", "usemtl a\nf 1 2 3\n");
+    assert!(bare.report.texture_missing.unwrap().contains("(vt)") && bare.cloud.colours.is_none());
     std::fs::remove_file(folder.path().join("a.mtl")).unwrap();
     let path = folder.path().join("a.obj");
     let without = formats::read(&path, &ReadOptions::default(), &()).unwrap();

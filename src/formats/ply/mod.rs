@@ -65,7 +65,7 @@ use crate::formats::meter::Meter;
 use crate::formats::reader::{Input, Reader};
 use crate::formats::source::Parsed;
 use crate::formats::table::{Layout, Points, columns};
-use crate::formats::{Inspected, Loaded, ReadOptions, Report, image};
+use crate::formats::{Inspected, Loaded, ReadOptions, Report, texture};
 use crate::geometry::{MipMap, Texture};
 use elements::{Contents, File};
 use header::Header;
@@ -157,15 +157,7 @@ fn find_texture(
         return Err("its vertices have no coordinates texture_u texture_v, s t or u v; those of faces' corners are not read".into());
     }
     match (&options.texture, named) {
-        (None, Some((name, folder))) => {
-            // The name comes from the file: a device or pipe may have no end.
-            let path = folder.join(name);
-            if path.exists() && !path.is_file() {
-                return Err(format!("{}: no regular file", path.display()).into());
-            }
-            let image = image::read(&path).and_then(|picture| MipMap::new(&picture));
-            image.map(|image| Some(Arc::new(image))).map_err(|error| error.to_string().into())
-        }
+        (None, Some((name, folder))) => texture::read(&folder.join(name)).map(Some),
         (given, _) => Ok(given.clone()),
     }
 }

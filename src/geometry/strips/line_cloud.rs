@@ -113,21 +113,17 @@ impl<'a> LineCloud<'a> {
 
 /// The mean colour of each group, in linear light.
 fn means(colours: &Colours, groups: &[Vec<u32>]) -> Colours {
-    let mean = |group: &Vec<u32>, of: &dyn Fn(u32) -> DVec3| {
-        (group.iter().map(|&i| of(i)).sum::<DVec3>() / group.len().max(1) as f64).to_array()
+    let mean = |group: &Vec<u32>| {
+        let sum: DVec3 = group.iter().map(|&i| colours.light(i as usize)).sum();
+        (sum / group.len().max(1) as f64).to_array()
     };
     match colours {
-        Colours::Linear(linear) => {
-            let of = |i: u32| Vec3::from(linear[i as usize]).as_dvec3();
-            Colours::Linear(groups.iter().map(|group| mean(group, &of).map(|value| value as f32)).collect())
+        Colours::Linear(_) => {
+            Colours::Linear(groups.iter().map(|group| mean(group).map(|value| value as f32)).collect())
         }
-        Colours::Srgb8(codes) => {
-            let of = |i: u32| {
-                let [r, g, b, _] = codes[i as usize].map(|code| srgb::decode(f64::from(code) / 255.0));
-                DVec3::new(r, g, b)
-            };
+        Colours::Srgb8(_) => {
             let code = |group: &Vec<u32>| {
-                let [r, g, b] = mean(group, &of).map(|value| srgb::encode8(value as f32));
+                let [r, g, b] = mean(group).map(|value| srgb::encode8(value as f32));
                 [r, g, b, 0]
             };
             Colours::Srgb8(groups.iter().map(code).collect())

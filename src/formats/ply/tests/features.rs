@@ -1,6 +1,7 @@
 //! What is understood beyond positions, normals, radii and colours.
 
 use super::*;
+use crate::formats::image;
 use crate::geometry::{Clip, ClipLine, Clips, Material, View, Weights};
 use crate::picture::Picture;
 use crate::settings::Lighting;
