@@ -184,7 +184,11 @@ pub fn quality<'a>(
     let options = RenderOptions { size: exact.size, count: true, ..Default::default() };
     let scene = Scene::upload(device, scene).unwrap();
     let mut renderer = Renderer::new(device, options).unwrap();
-    let (picture, report) = renderer.render_picture(&scene, camera, &settings).unwrap();
+    let (picture, mut report) = renderer.render_picture(&scene, camera, &settings).unwrap();
+    if settings.pull_push.is_some() {
+        // Splats leave out the far side; pull–push decides at each pixel, and draws its points.
+        report = renderer.render(&scene, camera, &Settings { cull: Cull::Back, ..settings }).unwrap();
+    }
     let object = || picture.colour.iter().zip(&exact.colour).filter(|(_, exact)| exact[3] > 0.0);
     let premultiplied = |[r, g, b, a]: [f32; 4]| [a * r, a * g, a * b].map(f64::from);
     let squares = object().map(|(found, exact)| {
