@@ -20,7 +20,7 @@ pub struct Textures<'a> {
     folder: Option<&'a Path>,
     /// In place of all.
     given: Option<&'a Arc<MipMap>>,
-    /// By image.
+    /// By image; `None` where one cannot be read.
     read: HashMap<u32, Option<Arc<MipMap>>>,
     /// Pixels of all images that were read.
     pixels: u64,
@@ -90,21 +90,23 @@ impl<'a> Textures<'a> {
 
     fn image(&mut self, texture: u32) -> Option<Arc<MipMap>> {
         let source = self.source(texture);
-        if let Some(known) = source.as_ref().ok().and_then(|source| self.read.get(source)) {
+        let known = source.as_ref().ok().and_then(|source| self.read.get(source));
+        if let Some(known) = known {
             return known.clone();
         }
-        let read = source.and_then(|source| Ok((source, self.read_image(source)?)));
-        match read {
-            Ok((source, image)) => {
-                let image = Some(Arc::new(image));
-                self.read.insert(source, image.clone());
-                image
+        let read = source.map(|source| (source, self.read_image(source)));
+        let cause = match read {
+            Ok((source, Ok(image))) => {
+                return self.read.entry(source).or_insert(Some(Arc::new(image))).clone();
             }
-            Err(cause) => {
-                self.missing.get_or_insert(format!("texture {texture}: {cause}"));
-                None
+            Ok((source, Err(cause))) => {
+                self.read.insert(source, None);
+                cause
             }
-        }
+            Err(cause) => cause,
+        };
+        self.missing.get_or_insert(format!("texture {texture}: {cause}"));
+        None
     }
 
     /// The image of a texture.

@@ -1,7 +1,7 @@
 //! Faces, and the normals of their corners.
 
-use super::paint::{Painting, Places};
 use super::survey::{self, keyword};
+use super::vertex_colours::{CornerColours, VertexColours};
 use crate::formats::meter::Meter;
 use crate::formats::quoted::quoted;
 use crate::formats::source::{Parsed, Source};
@@ -20,7 +20,7 @@ pub struct Found {
     /// A normal of each point, or 0; `None` if no corner names one.
     pub normals: Option<Vec<Vec3>>,
     /// Where the points' colours come from.
-    pub painting: Painting,
+    pub colours: VertexColours,
 }
 
 /// Vertices, normals and texture coordinates before a line, from which numbers below 0 count.
@@ -31,12 +31,12 @@ struct Before {
     coordinates: u64,
 }
 
-/// Reads the faces; a corner's normal is one of `normals`, and its texture coordinates are one of those of `places`.
+/// Reads the faces; a corner's normal is one of `normals`, and its texture coordinates are one of those of `corner_colours`.
 pub fn read(
     source: &Source,
     pieces: &[Piece],
     points: &Points,
-    (normals, mut places): (&[Vec3], Places),
+    (normals, mut corner_colours): (&[Vec3], CornerColours),
     meter: &Meter,
 ) -> Parsed<Found> {
     let mut collector = Collector::new(points, true);
@@ -53,20 +53,20 @@ pub fn read(
             } else if word == survey::TEXTURE.as_bytes() {
                 before.coordinates += 1;
             } else if word == survey::USED_MATERIAL.as_bytes() {
-                places.set_material(values.trim_ascii());
+                corner_colours.set_material(values.trim_ascii());
             } else if word == survey::FACE.as_bytes() {
                 face.vertices.clear();
                 face.coordinates.clear();
                 corners.read(values, before, &mut face).map_err(|cause| format!("line {number}: {cause}"))?;
-                places.face(&face.vertices, &face.coordinates);
+                corner_colours.face(&face.vertices, &face.coordinates);
                 collector.face(&face.vertices);
             }
         }
         meter.add(bytes.len() as u64)?;
     }
     let normals = corners.finish();
-    let painting = places.finish();
-    Ok(Found { triangles: collector.triangles, faces: collector.faces, normals, painting })
+    let colours = corner_colours.finish();
+    Ok(Found { triangles: collector.triangles, faces: collector.faces, normals, colours })
 }
 
 /// The corners of a face.

@@ -17,10 +17,10 @@
 
 mod faces;
 mod materials;
-mod paint;
 mod survey;
 #[cfg(test)]
 mod tests;
+mod vertex_colours;
 mod vertices;
 
 use super::declared::{Element, Encoding, Kind, Property, Scalar};
@@ -33,9 +33,9 @@ use super::text::rows;
 use super::{Faces, Inspected, Loaded, ReadOptions, Report};
 use crate::Progress;
 use crate::error::Cause;
-use paint::{Painting, Places};
 use std::path::Path;
 use survey::Survey;
+use vertex_colours::{CornerColours, VertexColours};
 
 /// The OBJ format.
 pub(super) struct Obj;
@@ -119,9 +119,9 @@ impl File<'_> {
         let (arrays, tally) =
             rows::read(self.source, self.pieces, vertices::SYNTAX, &layout, finish, self.meter)?;
         let mut points = Points::new(arrays, tally, &layout)?;
-        let (faces, painting) = self.read_others(&mut points, options)?;
+        let (faces, colours) = self.read_others(&mut points, options)?;
         let files = (self.folder, &self.survey.materials[..]);
-        let texture_missing = painting.apply(&mut points, files, options.texture.as_ref());
+        let texture_missing = colours.apply(&mut points, files, options.texture.as_ref());
         self.meter.finish();
         let textured = [survey::TEXTURE, survey::MATERIALS, survey::USED_MATERIAL];
         let used = [survey::VERTEX, survey::NORMAL, survey::FACE, survey::POINT];
@@ -139,17 +139,17 @@ impl File<'_> {
     }
 
     /// Gives the points their normals and triangles; returns where their colours come from, too.
-    fn read_others(&self, points: &mut Points, options: &ReadOptions) -> Parsed<(Faces, Painting)> {
+    fn read_others(&self, points: &mut Points, options: &ReadOptions) -> Parsed<(Faces, VertexColours)> {
         if self.survey.faces == 0 && self.survey.normals == 0 {
             return Ok(Default::default());
         }
         let normals = vertices::normals(self.source, self.pieces)?;
         let coordinates = vertices::coordinates(self.source, self.pieces)?;
-        let is_painted = !self.survey.materials.is_empty() || options.texture.is_some();
-        let places = Places::new(points, &coordinates, is_painted)?;
-        let found = faces::read(self.source, self.pieces, points, (&normals, places), self.meter)?;
+        let has_colours = !self.survey.materials.is_empty() || options.texture.is_some();
+        let corners = CornerColours::new(points, &coordinates, has_colours)?;
+        let found = faces::read(self.source, self.pieces, points, (&normals, corners), self.meter)?;
         points.cloud.triangles = found.triangles;
         points.cloud.normals = found.normals.or_else(|| vertices::in_order(points, &normals));
-        Ok((found.faces, found.painting))
+        Ok((found.faces, found.colours))
     }
 }

@@ -15,9 +15,9 @@ use std::sync::Arc;
 /// Number of a point's material where it has none.
 const NONE: u16 = u16::MAX;
 
-/// Where a point's colour comes from: the first of its faces.
+/// Where the colour of a point comes from: the corner of the first face that has texture coordinates there.
 #[derive(Clone, Copy, bytemuck::Zeroable)]
-struct Place {
+struct CornerColour {
     material: u16,
     /// Texture coordinates; not finite where the corner has none.
     at: Vec2,
@@ -25,23 +25,23 @@ struct Place {
     step: Vec2,
 }
 
-const NOWHERE: Place = Place { material: NONE, at: Vec2::NAN, step: Vec2::ZERO };
+const UNSET: CornerColour = CornerColour { material: NONE, at: Vec2::NAN, step: Vec2::ZERO };
 
-/// Places of the points, collected face by face.
-pub struct Places<'a> {
+/// Material and texture coordinates of each point, collected face by face.
+pub struct CornerColours<'a> {
     points: &'a Points,
     coordinates: &'a [Vec2],
-    of: Vec<Place>,
+    of: Vec<CornerColour>,
     /// Names of the materials, by number.
     names: HashMap<Vec<u8>, u16>,
     material: u16,
 }
 
-impl<'a> Places<'a> {
-    /// `coordinates` are those of the file. With `wanted`, places are kept.
+impl<'a> CornerColours<'a> {
+    /// `coordinates` are those of the file. Without `wanted`, nothing is kept.
     pub fn new(points: &'a Points, coordinates: &'a [Vec2], wanted: bool) -> Parsed<Self> {
         let mut of = room(if wanted { points.cloud.len() as u64 } else { 0 })?;
-        of.fill(NOWHERE);
+        of.fill(UNSET);
         Ok(Self { points, coordinates, of, names: HashMap::new(), material: NONE })
     }
 
@@ -70,33 +70,33 @@ impl<'a> Places<'a> {
             let Some(place) = place.filter(|place| !place.at.is_finite()) else { continue };
             let beside = [(k + 1) % all.len(), (k + all.len() - 1) % all.len()];
             let step = beside.map(|other| (all[other] - all[k]).abs());
-            *place = Place { material: self.material, at: all[k], step: 0.5 * (step[0] + step[1]) };
+            *place = CornerColour { material: self.material, at: all[k], step: 0.5 * (step[0] + step[1]) };
         }
     }
 
-    /// The places, and the names of their materials.
-    pub fn finish(self) -> Painting {
+    /// The result, after all faces.
+    pub fn finish(self) -> VertexColours {
         let mut names = vec![Vec::new(); self.names.len()];
         self.names.into_iter().for_each(|(name, number)| names[number as usize] = name);
-        Painting { places: self.of, names }
+        VertexColours { corners: self.of, names }
     }
 }
 
-/// Places of the points, and the materials that they name.
+/// Material and texture coordinates of each point, and the names of the materials.
 #[derive(Default)]
-pub struct Painting {
-    places: Vec<Place>,
+pub struct VertexColours {
+    corners: Vec<CornerColour>,
     names: Vec<Vec<u8>>,
 }
 
 /// What a material shows.
-enum Paint {
+enum MaterialColour {
     Texture(Arc<MipMap>),
     Plain(DVec3),
     Nothing,
 }
 
-impl Painting {
+impl VertexColours {
     /// Colours the points, and returns why a texture is missing. `given` replaces the textures of all materials. Without a texture, materials count
     /// if they differ and the points have no colours.
     pub fn apply(
@@ -105,7 +105,7 @@ impl Painting {
         (folder, files): (Option<&Path>, &[Vec<u8>]),
         given: Option<&Arc<MipMap>>,
     ) -> Option<String> {
-        if self.places.is_empty() {
+        if self.corners.is_empty() {
             return None;
         }
         let (materials, mut missing) = match (folder, files) {
@@ -116,34 +116,34 @@ impl Painting {
                 Err(cause) => (HashMap::new(), Some(cause.to_string())),
             },
         };
-        let paints = self.paints(&materials, given, &mut missing);
-        let without = given.map_or(Paint::Nothing, |given| Paint::Texture(given.clone()));
-        let paint = |place: &Place| paints.get(place.material as usize).unwrap_or(&without);
-        let has_texture = |place: &&Place| matches!(paint(place), Paint::Texture(_));
-        let is_textured = self.places.iter().filter(has_texture).any(|place| place.at.is_finite());
-        if !is_textured && self.places.iter().any(|place| has_texture(&place)) {
+        let materials_shown = self.materials_shown(&materials, given, &mut missing);
+        let without = given.map_or(MaterialColour::Nothing, |given| MaterialColour::Texture(given.clone()));
+        let shown = |place: &CornerColour| materials_shown.get(place.material as usize).unwrap_or(&without);
+        let has_texture = |place: &&CornerColour| matches!(shown(place), MaterialColour::Texture(_));
+        let is_textured = self.corners.iter().filter(has_texture).any(|place| place.at.is_finite());
+        if !is_textured && self.corners.iter().any(|place| has_texture(&place)) {
             missing.get_or_insert("the corners of its faces have no texture coordinates (vt)".into());
         }
         let mut plain: Vec<DVec3> = Vec::new();
-        for paint in &paints {
-            if let Paint::Plain(colour) = paint
+        for shown in &materials_shown {
+            if let MaterialColour::Plain(colour) = shown
                 && !plain.contains(colour)
             {
                 plain.push(*colour);
             }
         }
         if is_textured || points.cloud.colours.is_none() && plain.len() > 1 {
-            points.cloud.colours = Some(self.colours(points, paint));
+            points.cloud.colours = Some(self.colours(points, shown));
         }
         missing.filter(|_| !is_textured || given.is_none())
     }
 
-    fn paints(
+    fn materials_shown(
         &self,
         materials: &HashMap<Vec<u8>, Material>,
         given: Option<&Arc<MipMap>>,
         missing: &mut Option<String>,
-    ) -> Vec<Paint> {
+    ) -> Vec<MaterialColour> {
         let mut textures: HashMap<PathBuf, Option<Arc<MipMap>>> = HashMap::new();
         let mut load = |path: &PathBuf| match texture::read(path) {
             Ok(texture) => Some(texture),
@@ -152,37 +152,41 @@ impl Painting {
                 None
             }
         };
-        let paint = |name: &Vec<u8>| {
+        let shown = |name: &Vec<u8>| {
             if let Some(given) = given {
-                return Paint::Texture(given.clone());
+                return MaterialColour::Texture(given.clone());
             }
-            let Some(material) = materials.get(name) else { return Paint::Nothing };
+            let Some(material) = materials.get(name) else { return MaterialColour::Nothing };
             let texture = material.texture.as_ref();
             let texture = texture
                 .and_then(|path| textures.entry(path.clone()).or_insert_with(|| load(path)).clone())
-                .map(Paint::Texture);
-            texture.or(material.colour.map(Paint::Plain)).unwrap_or(Paint::Nothing)
+                .map(MaterialColour::Texture);
+            texture.or(material.colour.map(MaterialColour::Plain)).unwrap_or(MaterialColour::Nothing)
         };
-        self.names.iter().map(paint).collect()
+        self.names.iter().map(shown).collect()
     }
 
     /// Colours of all points: of the texture's level whose texels are as large as half of a side of the face; where there is none the point's own, or
     /// the default albedo.
-    fn colours<'p>(&self, points: &Points, paint: impl Fn(&Place) -> &'p Paint + Sync) -> Colours {
+    fn colours<'p>(
+        &self,
+        points: &Points,
+        shown: impl Fn(&CornerColour) -> &'p MaterialColour + Sync,
+    ) -> Colours {
         let albedo = DVec3::from(Lighting::default().albedo.map(f64::from));
         let own = |i: usize| points.cloud.colours.as_ref().map_or(albedo, |colours| colours.light(i));
-        let colour = |(i, place): (usize, &Place)| match paint(place) {
-            Paint::Texture(texture) if place.at.is_finite() => {
+        let colour = |(i, place): (usize, &CornerColour)| match shown(place) {
+            MaterialColour::Texture(texture) if place.at.is_finite() => {
                 let texels = place.step.as_dvec2() * DVec2::from(texture.level_size(0).map(f64::from));
                 texture.sample(place.at.as_dvec2(), (0.5 * texels.length()).log2())
             }
-            Paint::Plain(colour) => *colour,
+            MaterialColour::Plain(colour) => *colour,
             _ => own(i),
         };
         let code = |linear: DVec3| {
             let [red, green, blue] = linear.as_vec3().to_array().map(srgb::encode8);
             [red, green, blue, 0]
         };
-        Colours::Srgb8(self.places.par_iter().enumerate().map(colour).map(code).collect())
+        Colours::Srgb8(self.corners.par_iter().enumerate().map(colour).map(code).collect())
     }
 }
