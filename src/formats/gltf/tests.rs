@@ -342,20 +342,20 @@ fn cut_files_are_named() {
     assert!(text.to_string().contains("its description: invalid type"), "{text}");
 }
 
-/// A PNG of two texels: red on the left, blue on the right.
-fn red_and_blue() -> Vec<u8> {
+/// A PNG of four texels: red and blue above green and white.
+fn four_colours() -> Vec<u8> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.png");
-    let colour = vec![[1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]];
-    let picture = Picture { size: [2, 1], colour, ..Default::default() };
+    let colour = vec![[1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0], [0.0, 1.0, 0.0, 1.0], [1.0; 4]];
+    let picture = Picture { size: [2, 2], colour, ..Default::default() };
     write_png(&picture, Shading::Colour, &Output::File(path.clone())).unwrap();
     std::fs::read(path).unwrap()
 }
 
-/// A square with the texture coordinates u = 1/4, 3/4, 1/4, 3/4, and this base colour texture.
+/// A square whose corners are in the middles of the texels, row by row, with this base colour texture.
 fn textured(texture: Value) -> (Value, Vec<u8>) {
-    let (positions, image) = (floats(&SQUARE), red_and_blue());
-    let coordinates = floats(&[0.25, 0.5, 0.75, 0.5, 0.25, 0.5, 0.75, 0.5]);
+    let (positions, image) = (floats(&SQUARE), four_colours());
+    let coordinates = floats(&[0.25, 0.25, 0.75, 0.25, 0.25, 0.75, 0.75, 0.75]);
     let indices = [0u8, 1, 2, 1, 3, 2];
     let primitive = json!([{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "indices": 2, "material": 0}]);
     let attributes: &Attributes = &[
@@ -380,19 +380,18 @@ fn vertices_have_the_colours_of_base_colour_textures() {
         let Some(Colours::Linear(colours)) = cloud.colours else { panic!("no colours") };
         (colours, report.texture_missing)
     };
-    let (red, blue) = ([0.5, 0.0, 0.0], [0.0, 0.0, 1.0]);
-    assert_eq!(colours(json!({"index": 0})), (vec![red, blue, red, blue], None));
+    let [red, blue, green, white] = [[0.5, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.5, 0.0], [0.5, 0.5, 1.0]];
+    assert_eq!(colours(json!({"index": 0})), (vec![red, blue, green, white], None));
     // Half a texture to the side.
     let moved = json!({"index": 0, "extensions": {"KHR_texture_transform": {"offset": [0.5, 0]}}});
-    assert_eq!(colours(moved), (vec![blue, red, blue, red], None));
+    assert_eq!(colours(moved), (vec![blue, red, white, green], None));
     // A turn by 90° takes v to -u.
-    let transform = json!({"rotation": FRAC_PI_2, "offset": [0.75, 0]});
+    let transform = json!({"rotation": FRAC_PI_2, "offset": [1, 0]});
     let turned = json!({"index": 0, "extensions": {"KHR_texture_transform": transform}});
     let (found, missing) = colours(turned);
-    assert!(
-        missing.is_none() && found.iter().all(|own| Vec3::from(*own).abs_diff_eq(red.into(), 1e-6)),
-        "{found:?}"
-    );
+    let expected = [blue, white, red, green];
+    let is_near = |(a, b): (&[f32; 3], &[f32; 3])| Vec3::from(*a).abs_diff_eq(Vec3::from(*b), 1e-6);
+    assert!(missing.is_none() && found.iter().zip(&expected).all(is_near), "{found:?}");
 }
 
 #[test]

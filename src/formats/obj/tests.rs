@@ -105,15 +105,15 @@ fn faults_are_named_with_their_lines() {
     assert_eq!(far.report.faces.skipped, 2);
 }
 
-/// A square whose corners have the texture coordinates 1, 2, 3, 4, of a texture of two texels: red on the left, blue on the right.
+/// A square whose corners have the texture coordinates 1, 2, 3, 4, of a texture of four texels: red and blue above
+/// green and white.
 fn textured_square(folder: &Path, materials: &str, faces: &str) -> Loaded {
-    let red_and_blue = |k: usize| if k == 0 { [1.0, 0.0, 0.0, 1.0] } else { [0.0, 0.0, 1.0, 1.0] };
-    let picture =
-        Picture { size: [2, 1], colour: vec![red_and_blue(0), red_and_blue(1)], ..Default::default() };
+    let colour = vec![[1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0], [0.0, 1.0, 0.0, 1.0], [1.0; 4]];
+    let picture = Picture { size: [2, 2], colour, ..Default::default() };
     let image = Output::File(folder.join("a b.png"));
     write_png(&picture, Shading::Colour, &image).unwrap();
     std::fs::write(folder.join("a.mtl"), materials).unwrap();
-    let coordinates = "vt 0.25 0.5\nvt 0.75 0.5\nvt 0.75 0.5 0\nvt 0.25 0.5\n";
+    let coordinates = "vt 0.25 0.75\nvt 0.75 0.75\nvt 0.75 0.25 0\nvt 0.25 0.25\n";
     let text = format!("mtllib a.mtl\n{SQUARE}v 5 5 5\nv 6 5 5\n{coordinates}{faces}");
     let path = folder.join("a.obj");
     std::fs::write(&path, text).unwrap();
@@ -134,7 +134,7 @@ fn vertices_have_the_colours_of_their_textures_and_materials() {
     let loaded = textured_square(folder.path(), materials, faces);
     let albedo = Lighting::default().albedo.map(srgb::encode8);
     let (red, blue, green) = ([255, 0, 0], [0, 0, 255], [0, 255, 0]);
-    assert_eq!(codes(&loaded), [red, blue, blue, red, green, albedo]);
+    assert_eq!(codes(&loaded), [red, blue, [255; 3], green, green, albedo]);
     assert_eq!((loaded.report.texture_missing, loaded.report.skipped_elements), (None, vec![]));
 }
 
