@@ -362,7 +362,7 @@ fn many_instances_match_one_cloud_and_none_render_nothing() {
     let list: Vec<_> =
         (0..90).map(|i| Instance::new(if is_of_few(&i) { &of_few } else { &of_many }, place(i))).collect();
     let parts: Vec<_> = (0..90).map(|i| (if is_of_few(&i) { &few } else { &many }, place(i))).collect();
-    for (i, method) in methods().into_iter().step_by(if_whole(1, 2)).enumerate() {
+    for (i, method) in methods().into_iter().step_by(if_whole(1, 3)).enumerate() {
         for &rasterizer in &RASTERIZERS[if_whole(0..2, i % 2..i % 2 + 1)] {
             let settings = settings(method.name);
             let mut renderer = Renderer::new(&device, options(rasterizer)).unwrap();

@@ -27,8 +27,10 @@ struct View {
 
 static CASES: LazyLock<Vec<Case>> = LazyLock::new(cases);
 
+/// Of each case by every camera, in the short run by one.
 static VIEWS: LazyLock<Vec<View>> = LazyLock::new(|| {
-    let views = CASES.iter().flat_map(|case| case.cameras.iter().enumerate().map(move |c| (case, c)));
+    let of = |case: &'static Case| case.cameras.iter().take(if_whole(usize::MAX, 1)).enumerate();
+    let views = CASES.iter().flat_map(|case| of(case).map(move |camera| (case, camera)));
     views.map(|(case, (i, &camera))| View::new(case, camera, format!("{} {i}", case.name))).collect()
 });
 
@@ -180,7 +182,7 @@ fn centres_off_by_a_fiftieth_of_a_pixel_fail() {
 
 /// Checks that the mutation fails in at least `least` pixels of every view.
 fn all_fail(least: usize, comparison: impl Fn(&View) -> Comparison) {
-    for view in VIEWS.iter().step_by(if_whole(1, 2)) {
+    for view in VIEWS.iter() {
         let comparison = comparison(view);
         println!("{}: {} of {} pixels fail", view.name, comparison.failed, comparison.object_pixels);
         assert!(comparison.failed >= least, "{}: only {} pixels fail", view.name, comparison.failed);
