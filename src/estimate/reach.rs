@@ -8,7 +8,8 @@
 pub(super) fn reach(pa: f64, pb: f64, ab: f64) -> f64 {
     // By the law of cosines: twice the product of two sides and the cosine between them.
     let (at_p, at_a, at_b) = (pa + pb - ab, pa + ab - pb, pb + ab - pa);
-    if at_p <= 0.0 {
+    let longest = pa.max(pb).max(ab).sqrt();
+    let found = if at_p <= 0.0 {
         // The point of side ab that is equally far from p and a is |pa| / (2 cos A) away from both.
         let from_a = pa * ab.sqrt() / at_a;
         let from_b = pb * ab.sqrt() / at_b;
@@ -21,10 +22,10 @@ pub(super) fn reach(pa: f64, pb: f64, ab: f64) -> f64 {
         // 16 times the squared area, by Heron. It is only rounding error where two corners are close together, but the circumradius of an
         // acute triangle is between these two parts of the longest side.
         let area = (4.0 * pa * pb - at_p * at_p).max(0.0);
-        let longest = pa.max(pb).max(ab).sqrt();
         (pa * pb * ab / area).sqrt().min(longest / 3f64.sqrt()).max(0.5 * longest)
-    }
-    .max(0.0)
+    };
+    // Where two corners nearly coincide, twice a cosine may be rounded to 0.
+    found.max(0.0).min(longest / 3f64.sqrt())
 }
 
 #[cfg(test)]
@@ -77,6 +78,10 @@ mod tests {
         let (a, b) = (1.272_204_f64.powi(2), 9.6e-9_f64.powi(2) + 6.8e-9_f64.powi(2));
         for found in [reach(a, b, a + b), reach(b, a, a + b), reach(a, a + b, b), reach(a, a, b)] {
             assert!(found <= 0.75 * 1.272_204, "{found}");
+        }
+        // Corners as far apart as the sine of π is from 0, as at the poles of spheres.
+        for found in [reach(1e-32, 1.0, 1.0), reach(1.0, 1e-32, 1.0), reach(1.0, 1.0, 1e-32)] {
+            assert!((0.0..0.6).contains(&found), "{found}");
         }
     }
 }
