@@ -2,7 +2,7 @@
 
 use super::{Estimate, Estimated};
 use crate::error::{Error, Result};
-use crate::geometry::{Clips, Cloud, Ellipse, Surfels, View, Viewpoints, Weights, morton};
+use crate::geometry::{Clips, Cloud, Ellipse, FaceTextures, Surfels, View, Viewpoints, Weights, morton};
 use glam::Vec3;
 
 /// Surfels whose missing normals and radii are 0, with the data to estimate them.
@@ -10,6 +10,8 @@ pub(super) struct Draft {
     pub surfels: Surfels,
     /// Triangles between the surfels.
     pub triangles: Vec<[u32; 3]>,
+    /// Textures of the triangles.
+    pub face_textures: Option<FaceTextures>,
     view: View,
     viewpoints: Option<Viewpoints>,
     pub estimated: Estimated,
@@ -54,9 +56,17 @@ impl Draft {
                 "triangle {triangle:?} has a corner that is none of the {count} points: count from 0"
             )));
         }
+        if let Some(textures) = &cloud.face_textures {
+            textures.check(cloud.triangles.len())?;
+            if surfels.colours.is_none() {
+                let text = "textures of triangles without colours of the points: give those of triangles that have none";
+                return Err(Error::Usage(text.into()));
+            }
+        }
         Ok(Self {
             surfels,
             triangles: cloud.triangles,
+            face_textures: cloud.face_textures,
             view: cloud.view,
             viewpoints: cloud.viewpoints.filter(|viewpoints| viewpoints.scans.len() == count),
             estimated: Estimated::default(),
@@ -71,6 +81,7 @@ impl Draft {
     /// Replaces the surfels by others, which have normals and radii.
     pub fn replace(&mut self, surfels: Surfels) {
         (self.surfels, self.triangles, self.viewpoints) = (surfels, Vec::new(), None);
+        self.face_textures = None;
         self.sort_morton();
     }
 
@@ -97,6 +108,9 @@ impl Draft {
                 let [a, b, c] = corners.map(|i| place[i as usize]);
                 Some([a?, b?, c?])
             };
+            if let Some(textures) = &mut self.face_textures {
+                textures.keep(|i| moved(&self.triangles[i]).is_some());
+            }
             self.triangles = self.triangles.iter().filter_map(moved).collect();
         }
         self.surfels.permute(order);

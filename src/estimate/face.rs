@@ -1,5 +1,6 @@
 //! Ellipses on a triangle: one, or several on its halves.
 
+use super::face_colours::FaceColour;
 use super::face_edges::Border;
 use crate::geometry::{Clip, ClipLine, Ellipse};
 use glam::{DMat2, DVec2, DVec3, Vec3};
@@ -30,6 +31,8 @@ pub(super) struct Sample {
     /// Corners of the triangle, and their weights in the sample.
     pub corners: [u32; 3],
     pub weights: DVec3,
+    /// Its colour from a texture, linear light.
+    pub colour: Option<DVec3>,
     pub clip: Option<Clip>,
     /// Number of borders within its reach.
     pub borders: usize,
@@ -38,12 +41,25 @@ pub(super) struct Sample {
 /// A part of a triangle: the weights of the triangle's corners at its own.
 pub(super) type Part = [DVec3; 3];
 
+/// Up to which errors triangles are halved.
+#[derive(Clone, Copy)]
+pub(super) struct Limits {
+    /// Extent of the mesh.
+    pub extent: f64,
+    /// Most error of a part's ellipse, its normals and its corners' colours.
+    pub ellipse: f64,
+    /// Most error of a part's texture.
+    pub texture: f64,
+}
+
 /// A triangle that is sampled.
-pub(super) struct Face {
+pub(super) struct Face<'a> {
     pub corners: [u32; 3],
     pub points: [DVec3; 3],
     pub normals: [DVec3; 3],
     pub colours: Option<[DVec3; 3]>,
+    /// In place of the colours.
+    pub texture: Option<FaceColour<'a>>,
     /// Where the smooth surface ends, at its sides and corners.
     pub borders: Vec<Border>,
     /// Its sides.
@@ -52,18 +68,23 @@ pub(super) struct Face {
     pub bend: f64,
 }
 
-impl Face {
-    /// Halves the triangle until the error of its parts is at most `error`, and calls `each` with these, until it returns `false`.
-    pub fn halve(&self, extent: f64, error: f64, each: &mut impl FnMut(&Part) -> bool) {
+impl Face<'_> {
+    /// Halves the triangle until the errors of its parts are at most `limits`, and calls `each` with these, until it returns `false`.
+    pub fn halve(&self, limits: &Limits, each: &mut impl FnMut(&Part) -> bool) {
         let mut waiting = vec![[DVec3::X, DVec3::Y, DVec3::Z]];
         while let Some(part) = waiting.pop() {
             let (k, side) = longest(&part.map(|weights| mix(&self.points, weights)));
-            if side > LEAST_SIDE * extent && self.error(&part, extent) > error {
+            if side > LEAST_SIDE * limits.extent && self.exceeds(limits, &part) {
                 waiting.extend(halves(&part, k));
             } else if !each(&part) {
                 return;
             }
         }
+    }
+
+    fn exceeds(&self, limits: &Limits, part: &Part) -> bool {
+        self.texture.as_ref().is_some_and(|texture| texture.error(part) > limits.texture)
+            || limits.ellipse < f64::INFINITY && self.error(part, limits.extent) > limits.ellipse
     }
 
     /// The error of a part's ellipse, relative to the limits.
@@ -97,6 +118,7 @@ impl Face {
             ellipse,
             corners: self.corners,
             weights,
+            colour: None,
             clip: None,
             borders: 0,
         };

@@ -3,10 +3,12 @@
 //! A vertex' disc covers the parts of all its triangles that are nearest to it. Where triangles differ in size, as in decimated meshes and those of
 //! CAD programs, the longest of them sets the radius, and the disc stands out beyond the surface on all other sides; where they meet at an
 //! angle, the disc is in the plane of none. The ellipse through the corners of a triangle of least area (Steiner's) is the triangle's size in
-//! every direction. Triangles of coarse meshes are halved where an ellipse would stand out far, or normals and colours differ over it.
+//! every direction. Triangles of coarse meshes are halved where an ellipse would stand out far, or normals and colours differ over it, and those of
+//! all meshes where their textures do.
 
 use super::draft::Draft;
-use super::face::{Face, Sample, mix};
+use super::face::{Face, Limits, Sample, mix};
+use super::face_colours::FaceColours;
 use super::face_edges::{FaceEdges, Fan};
 use super::faces::area_vector;
 use super::{Estimate, Estimated, MARGIN, MeshSampling};
@@ -23,6 +25,10 @@ const MOST_OVERLAP: f64 = 2.8;
 const MOST_ANGULAR: f64 = 0.25;
 /// Most samples that halved triangles are made into. Meshes with fewer triangles are coarse.
 const MOST_HALVED: usize = 30_000;
+/// The same where textures differ: as many as a picture of 1000×1000 px has of a surface that fills it, half of which is seen.
+const MOST_TEXTURED: usize = 500_000;
+/// Part of the area whose textures vary, above which vertices are too few for them.
+const LEAST_VARYING: f64 = 0.01;
 /// Cosine of the angle between triangles at a sharp edge: 58°. Ellipses that overlap beyond flatter edges are more accurate than clipped ones.
 const SHARP: f64 = 0.53;
 /// The same of coarse meshes, whose ellipses are larger beside their details: 50°.
@@ -35,12 +41,13 @@ const ALIKE: f64 = 0.707;
 /// Replaces the discs of vertices by ellipses on the triangles, if [`MeshSampling`] says so. Only of meshes whose radii are all of faces, and
 /// without attributes that belong to points.
 pub(super) fn replace(draft: &mut Draft, how: &Estimate) {
-    let Some(areas) = areas_of_sampled(draft, how) else { return };
-    let mesh = Mesh::new(draft, how.outlines);
+    let colours = draft.face_textures.as_ref().map(FaceColours::new);
+    let Some(areas) = areas_of_sampled(draft, colours.as_ref(), how) else { return };
+    let mesh = Mesh::new(draft, colours.as_ref(), how.outlines);
     let kept: Vec<usize> = (0..draft.triangles.len()).filter(|&i| areas[i] > 0.0).collect();
-    let faces: Vec<Face> = kept.par_iter().map(|&i| mesh.face(i)).collect();
-    let error = mesh.error(&faces);
-    let samples: Vec<Sample> = faces.par_iter().flat_map_iter(|face| mesh.samples(face, error)).collect();
+    let faces: Vec<Face> = kept.par_iter().map(|&i| mesh.face(i, areas[i])).collect();
+    let limits = mesh.limits(&faces);
+    let samples: Vec<Sample> = faces.par_iter().flat_map_iter(|face| samples(face, &limits)).collect();
     let surfels = mesh.surfels(&samples);
     let count = samples.len() as u64;
     // Means of given normals are given ones.
@@ -57,7 +64,7 @@ pub(super) fn replace(draft: &mut Draft, how: &Estimate) {
 }
 
 /// The areas of the triangles, if they are sampled.
-fn areas_of_sampled(draft: &Draft, how: &Estimate) -> Option<Vec<f64>> {
+fn areas_of_sampled(draft: &Draft, colours: Option<&FaceColours>, how: &Estimate) -> Option<Vec<f64>> {
     let Draft { surfels, triangles, estimated, .. } = draft;
     let bound = surfels.weights.is_some()
         || surfels.clips.is_some()
@@ -90,7 +97,8 @@ fn areas_of_sampled(draft: &Draft, how: &Estimate) -> Option<Vec<f64>> {
     let needed = how.mesh_sampling == MeshSampling::Triangles
         || triangles.len() < MOST_HALVED
         || discs > MOST_OVERLAP * area
-        || angular > MOST_ANGULAR * area;
+        || angular > MOST_ANGULAR * area
+        || colours.is_some_and(|colours| colours.varying(&areas) > LEAST_VARYING * area);
     (area > 0.0 && needed).then_some(areas)
 }
 
@@ -98,6 +106,7 @@ fn areas_of_sampled(draft: &Draft, how: &Estimate) -> Option<Vec<f64>> {
 struct Mesh<'a> {
     draft: &'a Draft,
     edges: FaceEdges<'a>,
+    colours: Option<&'a FaceColours<'a>>,
     /// Diagonal of the bounding box.
     extent: f64,
     /// Whether ellipses end at the sides beyond which the surface does.
@@ -105,17 +114,18 @@ struct Mesh<'a> {
 }
 
 impl<'a> Mesh<'a> {
-    fn new(draft: &'a Draft, outlines: bool) -> Self {
+    fn new(draft: &'a Draft, colours: Option<&'a FaceColours<'a>>, outlines: bool) -> Self {
         let positions = &draft.surfels.positions;
         let is_coarse = draft.triangles.len() < MOST_HALVED;
         let sharp = if is_coarse { SHARP_OF_COARSE } else { SHARP };
         let edges = FaceEdges::new(positions, &draft.triangles, sharp);
         let corners = |of: fn(Vec3, Vec3) -> Vec3| positions.iter().copied().reduce(of).unwrap_or_default();
         let extent = corners(Vec3::max).as_dvec3().distance(corners(Vec3::min).as_dvec3());
-        Self { draft, edges, extent, outlines }
+        Self { draft, edges, colours, extent, outlines }
     }
 
-    fn face(&self, i: usize) -> Face {
+    /// Triangle `i`, of this area.
+    fn face(&self, i: usize, area: f64) -> Face<'a> {
         let corners = self.draft.triangles[i];
         let fans = [0, 1, 2].map(|k| self.edges.fan(i, k));
         let own = self.edges.normal(i);
@@ -125,50 +135,30 @@ impl<'a> Mesh<'a> {
         ends.sort_unstable();
         ends.dedup();
         let border = |(triangle, side): (u32, usize)| self.edges.border(triangle as usize, side);
+        let texture = self.colours.and_then(|colours| colours.of(i, area.sqrt() / self.extent));
+        let of_vertices = self.draft.surfels.colours.as_ref().filter(|_| texture.is_none());
         Face {
             corners,
             points: self.edges.points(i),
             normals: [0, 1, 2].map(|k| self.corner_normal(i, k, &fans[k])),
-            colours: self
-                .draft
-                .surfels
-                .colours
-                .as_ref()
-                .map(|of| corners.map(|corner| of.light(corner as usize))),
+            colours: of_vertices.map(|of| corners.map(|corner| of.light(corner as usize))),
+            texture,
             borders: ends.into_iter().filter(|_| self.outlines).filter_map(border).collect(),
             sides: (0..3).filter_map(|k| self.edges.border(i, k)).collect(),
             bend: bend.fold(0.0, f64::max),
         }
     }
 
-    /// The least error of halved triangles with [`MOST_HALVED`] samples at most, relative to the limits above; infinite if there are as many
-    /// triangles.
-    fn error(&self, faces: &[Face]) -> f64 {
-        if faces.len() >= MOST_HALVED {
-            return f64::INFINITY;
-        }
-        let are_too_many = |error: f64| {
-            // All faces count together, so that many large ones end soon.
-            let count = AtomicUsize::new(0);
-            faces.par_iter().for_each(|face| {
-                face.halve(self.extent, error, &mut |_| count.fetch_add(1, Ordering::Relaxed) < MOST_HALVED);
-            });
-            count.into_inner() > MOST_HALVED
+    /// The least limits with [`MOST_HALVED`] samples at most, without regard to textures, and [`MOST_TEXTURED`] with it; infinite if there are as
+    /// many triangles.
+    fn limits(&self, faces: &[Face]) -> Limits {
+        let all = Limits { extent: self.extent, ellipse: f64::INFINITY, texture: f64::INFINITY };
+        let ellipse = least_error(faces, MOST_HALVED, |ellipse| Limits { ellipse, ..all });
+        let texture = match self.colours {
+            Some(_) => least_error(faces, MOST_TEXTURED, |texture| Limits { ellipse, texture, ..all }),
+            None => f64::INFINITY,
         };
-        let mut error = 1.0;
-        while are_too_many(error) {
-            error *= 1.25;
-        }
-        error
-    }
-
-    fn samples(&self, face: &Face, error: f64) -> Vec<Sample> {
-        let mut samples = Vec::new();
-        face.halve(self.extent, error, &mut |part| {
-            samples.extend(face.sample(part));
-            true
-        });
-        samples
+        Limits { ellipse, texture, ..all }
     }
 
     /// The normal at corner `k` of triangle `i`: a given one if it is near the face's, otherwise the mean of the triangles around the corner on
@@ -209,11 +199,48 @@ impl<'a> Mesh<'a> {
     }
 }
 
-/// The mean colours of the corners, in linear light.
+/// The least error from 1 on, in steps of a quarter, by whose limits there are `most` samples at most; infinite if there are as many triangles.
+fn least_error(faces: &[Face], most: usize, limits: impl Fn(f64) -> Limits) -> f64 {
+    if faces.len() >= most {
+        return f64::INFINITY;
+    }
+    let error = |step: i32| 1.25f64.powi(step);
+    let are_too_many = |step: i32| {
+        let limits = limits(error(step));
+        // All faces count together, so that many large ones end soon.
+        let count = AtomicUsize::new(0);
+        faces
+            .par_iter()
+            .for_each(|face| face.halve(&limits, &mut |_| count.fetch_add(1, Ordering::Relaxed) < most));
+        count.into_inner() > most
+    };
+    // Too many by the first, not by the last.
+    let (mut few, mut enough) = (-1, 0);
+    while are_too_many(enough) {
+        (few, enough) = (enough, 2 * enough + 1);
+    }
+    while enough - few > 1 {
+        let middle = (few + enough) / 2;
+        if are_too_many(middle) { few = middle } else { enough = middle }
+    }
+    error(enough)
+}
+
+fn samples(face: &Face, limits: &Limits) -> Vec<Sample> {
+    let mut samples = Vec::new();
+    face.halve(limits, &mut |part| {
+        let colour = || face.texture.as_ref().map(|texture| texture.mean(part));
+        samples.extend(face.sample(part).map(|sample| Sample { colour: colour(), ..sample }));
+        true
+    });
+    samples
+}
+
+/// The samples' own colours, or the mean ones of the corners, in linear light.
 fn mean_colours(colours: &Colours, samples: &[Sample]) -> Colours {
     let means = samples.iter().map(|sample| {
-        let corners = sample.corners.map(|corner| colours.light(corner as usize));
-        mix(&corners, sample.weights).to_array()
+        let corners = || sample.corners.map(|corner| colours.light(corner as usize));
+        sample.colour.unwrap_or_else(|| mix(&corners(), sample.weights)).to_array()
     });
     match colours {
         Colours::Srgb8(_) => {

@@ -7,6 +7,7 @@ mod curvature;
 mod draft;
 mod eigen;
 mod face;
+mod face_colours;
 mod face_edges;
 mod face_samples;
 mod faces;
@@ -54,7 +55,8 @@ const MARGIN: f64 = 1.3;
 )]
 #[strum(serialize_all = "kebab-case")]
 pub enum MeshSampling {
-    /// On the triangles of meshes that are coarse, or whose triangles differ in size or meet at angles; at the vertices of others.
+    /// On the triangles of meshes that are coarse, whose triangles differ in size or meet at angles, or that have textures; at the vertices of
+    /// others.
     #[default]
     Auto,
     /// At the vertices.

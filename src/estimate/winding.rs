@@ -27,6 +27,9 @@ pub(super) fn turn(draft: &mut Draft) {
         let (root, flipped) = surfaces.of_triangle[i];
         if flipped ^ outside[&root] {
             triangle.swap(1, 2);
+            if let Some(textures) = &mut draft.face_textures {
+                textures.faces[i].corners.swap(1, 2);
+            }
             draft.estimated.triangles_turned += 1;
         }
     }

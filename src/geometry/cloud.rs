@@ -1,7 +1,9 @@
 //! Point clouds as files store them: positions, and optional attributes.
 
 use super::morton::order;
-use super::{Clips, Colours, Curvature, Ellipse, Materials, Surfels, Texture, Viewpoints, Weights};
+use super::{
+    Clips, Colours, Curvature, Ellipse, FaceTextures, Materials, Surfels, Texture, Viewpoints, Weights,
+};
 use glam::{DVec3, Vec3};
 
 /// Points as a structure of arrays; every array that is present has one entry per point.
@@ -38,6 +40,8 @@ pub struct Cloud {
     pub point_indices: Option<Vec<u32>>,
     /// Triangles as point indices, counter-clockwise from outside.
     pub triangles: Vec<[u32; 3]>,
+    /// Textures of the triangles, finer than [`Cloud::colours`] are between the points. Need colours, which triangles without a texture have.
+    pub face_textures: Option<FaceTextures>,
     /// Segments of ribbons as point indices: see [`Primitives`](super::Primitives). Their ends differ in index and position.
     pub ribbons: Vec<[u32; 2]>,
     /// Segments of tubes as point indices, likewise.
@@ -142,8 +146,14 @@ impl Cloud {
     pub(super) fn part(&self, kept: &[u32]) -> Self {
         let mut place = vec![None; self.len()];
         kept.iter().zip(0..).for_each(|(&from, to)| place[from as usize] = Some(to));
+        let is_kept = |i: usize| self.triangles[i].iter().all(|&i| place[i as usize].is_some());
+        let face_textures = self.face_textures.clone().map(|mut textures| {
+            textures.keep(is_kept);
+            textures
+        });
         Self {
             triangles: moved(&self.triangles, &place),
+            face_textures,
             ribbons: moved(&self.ribbons, &place),
             tubes: moved(&self.tubes, &place),
             ..self.points(kept)
@@ -227,6 +237,8 @@ impl From<Surfels> for Cloud {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::FaceTexture;
+    use glam::Vec2;
 
     #[test]
     fn few_points_beside_a_mesh_are_unused_and_many_are_a_cloud() {
@@ -255,9 +267,20 @@ mod tests {
             ribbons: vec![[5, 1]],
             tubes: vec![[1, 3]],
             triangles: vec![[0, 1, 5], [1, 3, 5]],
+            face_textures: Some(FaceTextures {
+                faces: [[Vec2::ZERO; 3], [Vec2::ONE; 3]]
+                    .map(|corners| FaceTexture { corners, ..FaceTexture::NONE })
+                    .to_vec(),
+                ..Default::default()
+            }),
             ..Default::default()
         };
+        let of = |cloud: &Cloud| {
+            let textures = cloud.face_textures.as_ref();
+            textures.map(|textures| textures.faces.iter().map(|face| face.corners[0].x).collect::<Vec<_>>())
+        };
         let [lines, points] = cloud.clone().split(false);
+        assert_eq!((of(&lines), of(&cloud)), (Some(vec![1.0]), Some(vec![0.0, 1.0])));
         assert!(!points.has_lines() && points.triangles.is_empty());
         assert_eq!((lines.radii, points.radii), (Some(vec![1.0, 3.0, 5.0]), Some(vec![0.0, 2.0, 4.0])));
         assert_eq!(

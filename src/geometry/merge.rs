@@ -4,7 +4,7 @@ use super::join::{
     circles, common_origin, common_view, join, join_clips, join_colours, join_corners, join_materials,
     join_textures,
 };
-use super::{Cloud, Curvature, Model, Primitives, Surfels, View, Viewpoints, Weights};
+use super::{Cloud, Curvature, FaceTextures, Model, Primitives, Surfels, View, Viewpoints, Weights};
 use crate::error::{Error, Result};
 use glam::{DVec3, Vec3};
 
@@ -134,6 +134,9 @@ impl Cloud {
             origin,
             viewpoints: Viewpoints::join(parts),
             view: common_view(parts),
+            face_textures: FaceTextures::join(
+                parts.iter_mut().map(|part| (part.face_textures.take(), part.triangles.len())),
+            ),
             triangles: join_corners(parts, |part| &mut part.triangles),
             ribbons: join_corners(parts, |part| &mut part.ribbons),
             tubes: join_corners(parts, |part| &mut part.tubes),

@@ -8,6 +8,7 @@ mod colour_map;
 mod curvature;
 mod discs;
 mod extent;
+mod face_textures;
 mod join;
 mod levels;
 mod materials;
@@ -24,6 +25,8 @@ pub mod srgb;
 mod strips;
 mod surfels;
 mod texture;
+#[cfg(feature = "estimate")]
+mod texture_detail;
 mod thin;
 #[cfg(any(feature = "estimate", feature = "io"))]
 mod usual_extent;
@@ -38,6 +41,7 @@ pub use cloud::{Cloud, View};
 pub use colour_map::{ColourMap, ColourScale, ValueRange};
 pub use curvature::{Curvature, tangents};
 pub use extent::{Extent, horizontal_axes};
+pub use face_textures::{FaceImage, FaceTexture, FaceTextures};
 pub use levels::{LevelTable, Levels, MOST_LEVELS, MostDrawn};
 pub use materials::{Material, Materials};
 pub use point_octree::{Ellipses, PointOctree, Selected, Selection};
@@ -49,6 +53,8 @@ pub(crate) use quantized::{CLUSTER, Lattice, Quantized, RADIUS_ROUNDING};
 pub use strips::{Lined, ToLines};
 pub use surfels::{Colours, Ellipse, Surfels};
 pub use texture::{MipMap, Texture};
+#[cfg(feature = "estimate")]
+pub(crate) use texture_detail::TextureDetail;
 #[cfg(any(feature = "estimate", feature = "io"))]
 pub(crate) use usual_extent::usual_extent;
 pub(crate) use valid::is_unit;

@@ -110,7 +110,7 @@ impl MipMap {
         let mut texels = finest.clone();
         let mut level = (finest, size);
         while level.1 != [1, 1] {
-            level = halved(&level.0, level.1);
+            level = halved(|i| level.0[i], level.1);
             texels.extend_from_slice(&level.0);
         }
         let texels = if coded {
@@ -172,15 +172,20 @@ fn code(&[r, g, b]: &[f32; 3]) -> [u8; 4] {
 }
 
 /// The next coarser level: each texel is the mean of the texels that it covers, weighted by area.
-fn halved(texels: &[[f32; 3]], [width, height]: [u32; 2]) -> (Vec<[f32; 3]>, [u32; 2]) {
+pub(super) fn halved<const N: usize>(
+    texels: impl Fn(usize) -> [f32; N] + Sync,
+    [width, height]: [u32; 2],
+) -> (Vec<[f32; N]>, [u32; 2]) {
     let size = [width, height].map(|side| (side / 2).max(1));
     let [columns, rows] = [shares(width, size[0]), shares(height, size[1])];
     let mean = |i: usize| {
         let (row, column) = (&rows[i / columns.len()], &columns[i % columns.len()]);
-        let texel = |&(y, h): &(usize, f32), &(x, w): &(usize, f32)| {
-            h * w * Vec3::from(texels[y * width as usize + x])
-        };
-        row.iter().flat_map(|y| column.iter().map(move |x| texel(y, x))).sum::<Vec3>().to_array()
+        let mut sum = [0.0; N];
+        for ((y, h), (x, w)) in row.iter().flat_map(|y| column.iter().map(move |x| (y, x))) {
+            let texel = texels(y * width as usize + x);
+            sum.iter_mut().zip(texel).for_each(|(sum, value)| *sum += h * w * value);
+        }
+        sum
     };
     ((0..columns.len() * rows.len()).into_par_iter().map(mean).collect(), size)
 }

@@ -101,6 +101,7 @@ impl Colouring {
         for cloud in clouds {
             let scalar = cloud.scalar.take();
             cloud.texture = None;
+            cloud.face_textures = None;
             cloud.colours = scalar.map(|scalar| scale.colours(scalar.par_iter().copied()));
         }
         coloured
@@ -189,6 +190,7 @@ fn values_to_colours(cloud: &mut Cloud) {
     let numbers = cloud.scalar.take().unwrap_or_else(|| vec![f64::NAN; count]);
     let single = |number: &f64| [*number as f32; 3];
     cloud.texture = None;
+    cloud.face_textures = None;
     cloud.colours = Some(Colours::Linear(numbers.iter().map(single).collect()));
 }
 

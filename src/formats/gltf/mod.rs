@@ -34,6 +34,7 @@ use super::table::{Arrays, Collector, Layout, Points, ROWS, fill};
 use super::{Faces, Inspected, Loaded, ReadOptions, Report};
 use crate::Progress;
 use crate::error::Cause;
+use crate::geometry::FaceTextures;
 use accessor::Contents;
 use glam::DVec3;
 use part::{Part, Parts};
@@ -127,8 +128,7 @@ impl<'a> Model<'a> {
         let meter = Meter::new(progress, vertices.count);
         let mut points = self.read(&layout, &meter)?;
         meter.finish();
-        let (triangles, faces) = self.faces(&points, options);
-        points.cloud.triangles = triangles;
+        let faces = self.add_faces(&mut points, options);
         let version = ("version", Some(&self.document.asset.version));
         let details = [version, ("generator", self.document.asset.generator.as_ref())];
         let detail = |(name, value): (&str, Option<&String>)| Some((name.to_owned(), on_one_line(value?)));
@@ -171,13 +171,22 @@ impl<'a> Model<'a> {
         Points::new(arrays, tally, layout)
     }
 
-    fn faces(&self, points: &Points, options: &ReadOptions) -> (Vec<[u32; 3]>, Faces) {
+    /// Gives the points their triangles, and these their textures.
+    fn add_faces(&self, points: &mut Points, options: &ReadOptions) -> Faces {
         let mut collector = Collector::new(points, points.lacking || options.triangles);
+        let is_textured = self.parts.all.iter().any(|part| part.image().is_some());
+        collector.given = is_textured.then(Vec::new);
+        let mut textures = FaceTextures::default();
         let mut first = 0;
         for part in &self.parts.all {
             part.add_faces(first, &mut collector);
+            let triangles = collector.given.iter_mut().flat_map(|given| given.drain(..));
+            part.add_textures(first, triangles, &mut textures);
             first += part.len();
         }
-        (collector.triangles, collector.faces)
+        let Collector { triangles, faces, .. } = collector;
+        points.cloud.triangles = triangles;
+        points.cloud.face_textures = Some(textures).filter(|textures| !textures.images.is_empty());
+        faces
     }
 }

@@ -7,7 +7,7 @@ use super::texture::{Textures, Texturing};
 use crate::formats::declared::Scalar;
 use crate::formats::source::{Parsed, room};
 use crate::formats::table::Collector;
-use crate::geometry::memory;
+use crate::geometry::{FaceImage, FaceTexture, FaceTextures, memory};
 use glam::{DMat3, DMat4, DVec3};
 use std::collections::HashMap;
 
@@ -232,7 +232,7 @@ impl<'a> Part<'a> {
 
     /// Position, normal or 0, and linear colour of the used vertex `rank`.
     pub fn values(&self, rank: usize) -> [f64; VALUES] {
-        let vertex = self.used.as_ref().map_or(rank, |used| used.vertices[rank] as usize);
+        let vertex = self.vertex(rank);
         let three = |numbers: &Numbers| [0, 1, 2].map(|axis| numbers.get(vertex, axis));
         let position = self.matrix.transform_point3(three(&self.position).into()).to_array();
         let normal = self
@@ -261,6 +261,37 @@ impl<'a> Part<'a> {
                 None => mode.add((0..self.position.count as u32).map(corner), mirrored, collector),
             }
         }
+    }
+
+    /// The image of its triangles; none where colours of vertices are another factor.
+    pub fn image(&self) -> Option<FaceImage> {
+        let levels = self.texturing.as_ref().filter(|_| self.colour.is_none())?.image.clone();
+        Some(FaceImage { levels, factor: DVec3::from(self.factor).as_vec3() })
+    }
+
+    /// Adds the textures of its triangles, which have these corners; `first` is the number of the part's first vertex.
+    pub fn add_textures(
+        &self,
+        first: usize,
+        triangles: impl Iterator<Item = [f64; 3]>,
+        textures: &mut FaceTextures,
+    ) {
+        let number = self.image().map(|image| {
+            textures.images.push(image);
+            textures.images.len() as u32 - 1
+        });
+        let texture = |corners: [f64; 3]| {
+            let (image, texturing) = number.zip(self.texturing.as_ref())?;
+            let at = |corner: f64| texturing.at(self.vertex(corner as usize - first)).as_vec2();
+            let corners = corners.map(at);
+            corners.iter().all(|at| at.is_finite()).then_some(FaceTexture { image, corners })
+        };
+        textures.faces.extend(triangles.map(|corners| texture(corners).unwrap_or(FaceTexture::NONE)));
+    }
+
+    /// The vertex of a rank among those that are used.
+    fn vertex(&self, rank: usize) -> usize {
+        self.used.as_ref().map_or(rank, |used| used.vertices[rank] as usize)
     }
 
     /// The rank of a vertex, if it exists.

@@ -8,7 +8,7 @@ use crate::geometry::Colours;
 use crate::settings::Shading;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use serde_json::{Value, json};
 use std::f64::consts::FRAC_PI_2;
 
@@ -392,6 +392,24 @@ fn vertices_have_the_colours_of_base_colour_textures() {
     let expected = [blue, white, red, green];
     let is_near = |(a, b): (&[f32; 3], &[f32; 3])| Vec3::from(*a).abs_diff_eq(Vec3::from(*b), 1e-6);
     assert!(missing.is_none() && found.iter().zip(&expected).all(is_near), "{found:?}");
+}
+
+#[test]
+fn triangles_have_the_textures_of_their_vertices() {
+    let (mut document, mut buffer) = textured(json!({"index": 0}));
+    let length = buffer.len();
+    // The first vertex is not used, and a second node shows the same triangles from behind.
+    let first = buffer.windows(6).position(|bytes| bytes == [0, 1, 2, 1, 3, 2]).unwrap();
+    buffer[first..first + 6].copy_from_slice(&[3, 2, 1, 2, 2, 1]);
+    document["nodes"] = json!([{"mesh": 0}, {"mesh": 0, "scale": [-1, 1, 1]}]);
+    document["scenes"][0]["nodes"] = json!([0, 1]);
+    let Loaded { cloud, .. } = loaded(&document, &buffer[..length]).unwrap();
+    let textures = cloud.face_textures.unwrap();
+    assert_eq!(textures.images[0].factor, Vec3::new(0.5, 0.5, 1.0));
+    // From the top.
+    let [b, c, d] = [[0.75, 0.75], [0.25, 0.25], [0.75, 0.25]].map(Vec2::from);
+    let corners: Vec<_> = textures.faces.iter().map(|face| face.corners).collect();
+    assert_eq!((corners, cloud.triangles.len(), textures.images.len()), (vec![[d, c, b], [d, b, c]], 2, 2));
 }
 
 #[test]

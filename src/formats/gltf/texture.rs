@@ -30,7 +30,7 @@ pub struct Textures<'a> {
 
 /// The texture of a primitive's vertices.
 pub struct Texturing<'a> {
-    image: Arc<MipMap>,
+    pub image: Arc<MipMap>,
     coordinates: Numbers<'a>,
     transform: Transform,
     /// Change of the coordinates to a vertex beside, by rank; negative where none is known.
@@ -160,7 +160,7 @@ impl Texturing<'_> {
     }
 
     /// Coordinates of a vertex, v upwards.
-    fn at(&self, vertex: usize) -> DVec2 {
+    pub fn at(&self, vertex: usize) -> DVec2 {
         let at = DVec2::from([0, 1].map(|axis| self.coordinates.get(vertex, axis)));
         let turned = DVec2::from_angle(self.transform.rotation).rotate(self.transform.scale * at);
         let at = self.transform.offset + turned;

@@ -40,6 +40,7 @@ pub fn read(
     meter: &Meter,
 ) -> Parsed<Found> {
     let mut collector = Collector::new(points, true);
+    collector.given = corner_colours.is_wanted().then(Vec::new);
     let mut corners = Corners::new(points, normals)?;
     let (mut before, mut buffer, mut face) = (Before::default(), Vec::new(), Face::default());
     for piece in pieces {
@@ -60,6 +61,10 @@ pub fn read(
                 corners.read(values, before, &mut face).map_err(|cause| format!("line {number}: {cause}"))?;
                 corner_colours.face(&face.vertices, &face.coordinates);
                 collector.face(&face.vertices);
+                let triangles = collector.given.iter_mut().flat_map(|given| given.drain(..));
+                triangles.for_each(|triangle| {
+                    corner_colours.triangle(triangle, &face.vertices, &face.coordinates)
+                });
             }
         }
         meter.add(bytes.len() as u64)?;

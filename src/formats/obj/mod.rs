@@ -1,4 +1,4 @@
-//! OBJ reader (Wavefront): vertices, with colours if they have any, normals, and faces, whose textures colour their vertices.
+//! OBJ reader (Wavefront): vertices, with colours if they have any, normals, and faces, with textures, which colour their vertices, too.
 //!
 //! | line | becomes |
 //! |---|---|
@@ -6,7 +6,7 @@
 //! | `v x y z r g b`, `v x y z r g b a` | the same, and a colour, sRGB-encoded: whole numbers to 255 or 65535, or fractions to 1 in all vertices. Vertices without one beside others get the default albedo |
 //! | `vn x y z` | the normal of the vertices whose corners name it. A vertex with corners of different normals has none: its faces give it one. Without such corners, of as many normals as vertices each is that of the vertex with its number |
 //! | `f v/vt/vn …` | a polygon, as a fan of triangles; numbers below 0 count backwards |
-//! | `vt u v` | texture coordinates: a vertex has the colour that the texture has at the first of its corners with some |
+//! | `vt u v` | texture coordinates of triangles: a vertex has the colour that the texture has at the first of its corners with some |
 //! | `mtllib FILE…` | the materials, beside the file: see `materials` |
 //! | `usemtl NAME` | the material of the faces after it |
 //! | `p …` | points, as all vertices are |

@@ -4,9 +4,9 @@ use super::*;
 use crate::Picture;
 use crate::formats::image::{Output, write_png};
 use crate::formats::{self, read_bytes};
-use crate::geometry::{Colours, srgb};
+use crate::geometry::{Colours, FaceTexture, srgb};
 use crate::settings::{Lighting, Shading};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use std::path::Path;
 
 fn read(text: &str) -> crate::Result<Loaded> {
@@ -136,6 +136,28 @@ fn vertices_have_the_colours_of_their_textures_and_materials() {
     let (red, blue, green) = ([255, 0, 0], [0, 0, 255], [0, 255, 0]);
     assert_eq!(codes(&loaded), [red, blue, [255; 3], green, green, albedo]);
     assert_eq!((loaded.report.texture_missing, loaded.report.skipped_elements), (None, vec![]));
+    // The triangles have their own, and those without coordinates none.
+    let textures = loaded.cloud.face_textures.unwrap();
+    let at = |corners: [[f32; 2]; 3]| corners.map(Vec2::from);
+    let expected = [
+        (0, at([[0.25, 0.75], [0.75, 0.75], [0.75, 0.25]])),
+        (0, at([[0.25, 0.75], [0.75, 0.25], [0.25, 0.25]])),
+        (FaceTexture::NO_IMAGE, [Vec2::ZERO; 3]),
+        (FaceTexture::NO_IMAGE, [Vec2::ZERO; 3]),
+    ];
+    assert_eq!(textures.faces, expected.map(|(image, corners)| FaceTexture { image, corners }));
+    assert_eq!((textures.images.len(), loaded.cloud.triangles.len()), (1, 4));
+}
+
+#[test]
+fn a_seam_of_a_texture_is_between_triangles() {
+    let folder = tempfile::tempdir().unwrap();
+    // Both triangles share an edge, at whose ends they have different coordinates; the face between them has no area.
+    let faces = "usemtl a\nf 1/1 2/2 3/3\nf 1/1 1/2 3/3\nf 1/2 3/1 4/4\n";
+    let loaded = textured_square(folder.path(), "newmtl a\nmap_Kd a b.png\n", faces);
+    let corners: Vec<_> = loaded.cloud.face_textures.unwrap().faces.iter().map(|face| face.corners).collect();
+    let [a, b, c, d] = [[0.25, 0.75], [0.75, 0.75], [0.75, 0.25], [0.25, 0.25]].map(Vec2::from);
+    assert_eq!((corners, loaded.cloud.triangles.len()), (vec![[a, b, c], [b, a, d]], 2));
 }
 
 #[test]

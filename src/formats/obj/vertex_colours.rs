@@ -1,12 +1,12 @@
-//! Colours of points from the textures and the materials of their faces.
+//! Colours of points and triangles from textures and materials.
 
 use super::materials::{self, Material};
 use crate::formats::source::{Parsed, room};
 use crate::formats::table::Points;
 use crate::formats::texture;
-use crate::geometry::{Colours, MipMap, srgb};
+use crate::geometry::{Colours, FaceImage, FaceTexture, FaceTextures, MipMap, srgb};
 use crate::settings::Lighting;
-use glam::{DVec2, DVec3, Vec2};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -25,13 +25,21 @@ struct CornerColour {
     step: Vec2,
 }
 
+/// Where the colours of a triangle come from.
+struct TriangleColour {
+    material: u16,
+    /// Texture coordinates of the corners, some not finite where one has none.
+    corners: [Vec2; 3],
+}
+
 const UNSET: CornerColour = CornerColour { material: NONE, at: Vec2::NAN, step: Vec2::ZERO };
 
-/// Material and texture coordinates of each point, collected face by face.
+/// Materials and texture coordinates of points and triangles, collected face by face.
 pub struct CornerColours<'a> {
     points: &'a Points,
     coordinates: &'a [Vec2],
     of: Vec<CornerColour>,
+    triangles: Vec<TriangleColour>,
     /// Names of the materials, by number.
     names: HashMap<Vec<u8>, u16>,
     material: u16,
@@ -42,7 +50,7 @@ impl<'a> CornerColours<'a> {
     pub fn new(points: &'a Points, coordinates: &'a [Vec2], wanted: bool) -> Parsed<Self> {
         let mut of = room(if wanted { points.cloud.len() as u64 } else { 0 })?;
         of.fill(UNSET);
-        Ok(Self { points, coordinates, of, names: HashMap::new(), material: NONE })
+        Ok(Self { points, coordinates, of, triangles: Vec::new(), names: HashMap::new(), material: NONE })
     }
 
     /// The material of the faces from here on.
@@ -60,11 +68,7 @@ impl<'a> CornerColours<'a> {
         if self.of.is_empty() || vertices.len() != corners.len() {
             return;
         }
-        let at = |corner: &Option<i64>| {
-            let index = corner.and_then(|index| usize::try_from(index).ok());
-            index.and_then(|index| self.coordinates.get(index)).copied().unwrap_or(Vec2::NAN)
-        };
-        let all: Vec<Vec2> = corners.iter().map(at).collect();
+        let all: Vec<Vec2> = corners.iter().map(|corner| self.at(*corner)).collect();
         for (k, vertex) in vertices.iter().enumerate() {
             let place = self.points.of_vertex(*vertex).and_then(|point| self.of.get_mut(point as usize));
             let Some(place) = place.filter(|place| !place.at.is_finite()) else { continue };
@@ -74,18 +78,37 @@ impl<'a> CornerColours<'a> {
         }
     }
 
+    /// Adds a triangle of the face of these vertices and indices of texture coordinates.
+    pub fn triangle(&mut self, triangle: [f64; 3], vertices: &[f64], corners: &[Option<i64>]) {
+        let place = |vertex: f64| vertices.iter().position(|other| *other == vertex);
+        let corners = triangle.map(|vertex| self.at(place(vertex).and_then(|k| *corners.get(k)?)));
+        self.triangles.push(TriangleColour { material: self.material, corners });
+    }
+
+    /// Whether colours are collected.
+    pub fn is_wanted(&self) -> bool {
+        !self.of.is_empty()
+    }
+
+    /// Texture coordinates by their index; not finite where there are none.
+    fn at(&self, corner: Option<i64>) -> Vec2 {
+        let index = corner.and_then(|index| usize::try_from(index).ok());
+        index.and_then(|index| self.coordinates.get(index)).copied().unwrap_or(Vec2::NAN)
+    }
+
     /// The result, after all faces.
     pub fn finish(self) -> VertexColours {
         let mut names = vec![Vec::new(); self.names.len()];
         self.names.into_iter().for_each(|(name, number)| names[number as usize] = name);
-        VertexColours { corners: self.of, names }
+        VertexColours { corners: self.of, triangles: self.triangles, names }
     }
 }
 
-/// Material and texture coordinates of each point, and the names of the materials.
+/// Materials and texture coordinates of points and triangles, and the names of the materials.
 #[derive(Default)]
 pub struct VertexColours {
     corners: Vec<CornerColour>,
+    triangles: Vec<TriangleColour>,
     names: Vec<Vec<u8>>,
 }
 
@@ -118,8 +141,8 @@ impl VertexColours {
         };
         let materials_shown = self.materials_shown(&materials, given, &mut missing);
         let without = given.map_or(MaterialColour::Nothing, |given| MaterialColour::Texture(given.clone()));
-        let shown = |place: &CornerColour| materials_shown.get(place.material as usize).unwrap_or(&without);
-        let has_texture = |place: &&CornerColour| matches!(shown(place), MaterialColour::Texture(_));
+        let shown = |material: u16| materials_shown.get(material as usize).unwrap_or(&without);
+        let has_texture = |place: &&CornerColour| matches!(shown(place.material), MaterialColour::Texture(_));
         let is_textured = self.corners.iter().filter(has_texture).any(|place| place.at.is_finite());
         if !is_textured && self.corners.iter().any(|place| has_texture(&place)) {
             missing.get_or_insert("the corners of its faces have no texture coordinates (vt)".into());
@@ -134,6 +157,9 @@ impl VertexColours {
         }
         if is_textured || points.cloud.colours.is_none() && plain.len() > 1 {
             points.cloud.colours = Some(self.colours(points, shown));
+        }
+        if is_textured {
+            points.cloud.face_textures = self.face_textures(shown);
         }
         missing.filter(|_| !is_textured || given.is_none())
     }
@@ -168,14 +194,10 @@ impl VertexColours {
 
     /// Colours of all points: of the texture's level whose texels are as large as half of a side of the face; where there is none the point's own, or
     /// the default albedo.
-    fn colours<'p>(
-        &self,
-        points: &Points,
-        shown: impl Fn(&CornerColour) -> &'p MaterialColour + Sync,
-    ) -> Colours {
+    fn colours<'p>(&self, points: &Points, shown: impl Fn(u16) -> &'p MaterialColour + Sync) -> Colours {
         let albedo = DVec3::from(Lighting::default().albedo.map(f64::from));
         let own = |i: usize| points.cloud.colours.as_ref().map_or(albedo, |colours| colours.light(i));
-        let colour = |(i, place): (usize, &CornerColour)| match shown(place) {
+        let colour = |(i, place): (usize, &CornerColour)| match shown(place.material) {
             MaterialColour::Texture(texture) if place.at.is_finite() => {
                 let texels = place.step.as_dvec2() * DVec2::from(texture.level_size(0).map(f64::from));
                 texture.sample(place.at.as_dvec2(), (0.5 * texels.length()).log2())
@@ -188,5 +210,26 @@ impl VertexColours {
             [red, green, blue, 0]
         };
         Colours::Srgb8(self.corners.par_iter().enumerate().map(colour).map(code).collect())
+    }
+
+    /// Textures of the triangles.
+    fn face_textures<'p>(&self, shown: impl Fn(u16) -> &'p MaterialColour) -> Option<FaceTextures> {
+        let mut images: Vec<FaceImage> = Vec::new();
+        let mut numbers: HashMap<u16, u32> = HashMap::new();
+        let mut number = |material: u16| {
+            let MaterialColour::Texture(levels) = shown(material) else { return FaceTexture::NO_IMAGE };
+            let same = images.iter().position(|image| Arc::ptr_eq(&image.levels, levels));
+            same.unwrap_or_else(|| {
+                images.push(FaceImage { levels: levels.clone(), factor: Vec3::ONE });
+                images.len() - 1
+            }) as u32
+        };
+        let face = |triangle: &TriangleColour| {
+            let is_textured = triangle.corners.iter().all(|at| at.is_finite());
+            let image = *numbers.entry(triangle.material).or_insert_with(|| number(triangle.material));
+            if is_textured { FaceTexture { image, corners: triangle.corners } } else { FaceTexture::NONE }
+        };
+        let faces = self.triangles.iter().map(face).collect();
+        (!images.is_empty()).then_some(FaceTextures { images, faces })
     }
 }

@@ -10,12 +10,14 @@ pub struct Collector<'a> {
     /// The triangles, if they are kept.
     pub triangles: Vec<[u32; 3]>,
     pub faces: Faces,
+    /// The corners of the triangles as they were given, of readers that ask for them.
+    pub given: Option<Vec<[f64; 3]>>,
 }
 
 impl<'a> Collector<'a> {
     /// Collects triangles between `points` with `keep`; otherwise counts them.
     pub fn new(points: &'a Points, keep: bool) -> Self {
-        Self { points, keep, triangles: Vec::new(), faces: Faces::default() }
+        Self { points, keep, triangles: Vec::new(), faces: Faces::default(), given: None }
     }
 
     /// Adds a polygon as a fan.
@@ -65,6 +67,7 @@ impl<'a> Collector<'a> {
         let proper = a != b && b != c && c != a;
         if proper && self.keep {
             self.triangles.push([a, b, c]);
+            self.given.iter_mut().for_each(|given| given.push(corners));
         }
         proper
     }

@@ -105,7 +105,7 @@ impl<'a> LineCloud<'a> {
         lines.chain(kept.iter().flatten()).for_each(|&i| used[i as usize] = true);
         let staying: Vec<u32> = (0..cloud.len() as u32).filter(|&i| used[i as usize]).collect();
         lined.vertices[1] = (0..cloud.len()).filter(|&i| used[i] && was[i]).count() as u64 + new.len() as u64;
-        let old = Cloud { triangles: kept, ..cloud.clone() }.part(&staying);
+        let old = Cloud { triangles: kept, face_textures: None, ..cloud.clone() }.part(&staying);
         // Both have colours, or neither has.
         Cloud::merge(vec![old, new], [0.0; 3])
     }
