@@ -2,6 +2,7 @@
 
 use crate::matrix::if_whole;
 use crate::program::{Program, scan};
+use std::f64::consts::PI;
 
 const SPHERE: &str = "scene:bumpy-sphere?points=20000";
 
@@ -251,6 +252,57 @@ fn textures_come_from_the_file_or_the_command_line() {
     std::fs::remove_file(program.path("own.png")).unwrap();
     assert!(program.run(&format!("render {common} -o a.png")).err.contains("drawn without its texture"));
     program.run(&format!("render {common} --texture given.png --color-by x -o a.png")).error(2);
+}
+
+/// An OBJ file of a sphere of few triangles, with an image of thin lines and discs.
+fn write_globe(program: &Program) {
+    let line = |i: u32| i % 64 < 3;
+    let is_disc = |x: u32, y: u32| ((x % 96) as f32 - 50.0).hypot((y % 80) as f32 - 40.0) < 9.0;
+    let pixel = |x, y| match (line(x) || line(y), is_disc(x, y)) {
+        (true, _) => image::Rgb([20, 30, 60]),
+        (_, true) => image::Rgb([200, 40, 30]),
+        _ => image::Rgb([220, 200, 160]),
+    };
+    image::RgbImage::from_fn(1024, 512, pixel).save(program.path("skin.png")).unwrap();
+    program.write("globe.mtl", "newmtl skin\nmap_Kd skin.png\n");
+    const ROWS: u32 = 16;
+    const COLUMNS: u32 = 32;
+    let vertex = |i: u32| {
+        let [u, v] = [(i % (COLUMNS + 1), COLUMNS), (i / (COLUMNS + 1), ROWS)]
+            .map(|(k, of)| f64::from(k) / f64::from(of));
+        let ((sin, cos), (x, z)) = ((PI * v).sin_cos(), (2.0 * PI * u).sin_cos());
+        format!("v {} {cos} {}\nvt {u} {}\n", sin * x, sin * z, 1.0 - v)
+    };
+    let face = |i: u32| {
+        let a = i / COLUMNS * (COLUMNS + 1) + i % COLUMNS + 1;
+        let corners = [a, a + COLUMNS + 1, a + COLUMNS + 2, a + 1].map(|k| format!("{k}/{k}"));
+        format!("f {}\n", corners.join(" "))
+    };
+    let vertices: String = (0..(ROWS + 1) * (COLUMNS + 1)).map(vertex).collect();
+    let faces: String = (0..ROWS * COLUMNS).map(face).collect();
+    program.write("globe.obj", format!("mtllib globe.mtl\nusemtl skin\n{vertices}{faces}"));
+}
+
+/// Against the exact picture of the textured triangles.
+#[test]
+fn textures_of_coarse_meshes_are_as_sharp_as_their_images() {
+    let Some(program) = Program::with_device("textures_of_coarse_meshes_are_as_sharp_as_their_images") else {
+        return;
+    };
+    write_globe(&program);
+    for (size, shading) in [(160, "color"), (96, "lit")] {
+        let view = format!("--size {size}x{size} --shading {shading} --eye 1,1.2,3 --target 0,0,0 -q");
+        program.run(&format!("truth globe.obj -o truth.exr --filter gaussian {view}")).text();
+        let rmse = |options: &str| {
+            program.run(&format!("render globe.obj -o made.exr {options} {view}")).text();
+            let run = program.run("compare made.exr truth.exr --json -");
+            let result: serde_json::Value = serde_json::from_str(run.text()).unwrap();
+            result["metrics"]["rmse"].as_f64().unwrap()
+        };
+        let [own, vertices] = ["", "--mesh-sampling vertices"].map(rmse);
+        println!("{size}², {shading}: {own:.4}, at the vertices {vertices:.4}");
+        assert!(own < 0.008 && own < 0.15 * vertices, "{size}², {shading}: {own:.4}, {vertices:.4}");
+    }
 }
 
 #[test]

@@ -103,7 +103,7 @@ impl Traceable for Mesh {
         let corners = self.triangles[index];
         let normal = mean(corners.map(|corner| self.normals[corner as usize]), weights).try_normalize();
         let normal = normal.unwrap_or_else(|| self.flat_normal(index));
-        Some(Hit { t: t / length, normal, albedo: self.albedo.at(corners, weights) })
+        Some(Hit { t: t / length, normal, albedo: self.albedo.at(index, corners, weights) })
     }
 
     fn bounds(&self) -> Bounds {

@@ -1,7 +1,7 @@
 //! Meshes against the surface that they approximate.
 
 use super::centre;
-use crate::geometry::{Camera, Cloud, Colours, MipMap, Texture};
+use crate::geometry::{Camera, Cloud, Colours, FaceImage, FaceTexture, FaceTextures, MipMap, Texture};
 use crate::picture::Picture;
 use crate::settings::Settings;
 use crate::verify::scenes;
@@ -161,6 +161,38 @@ fn textures_are_sampled_between_the_corners() {
     }
 }
 
+/// Two triangles beside each other, of which the second shows the same image in half its colours, turned; and one without an image.
+fn textured_faces() -> Cloud {
+    let own = textured([Vec2::ZERO, Vec2::X, Vec2::Y]);
+    let levels = own.texture.unwrap().image;
+    let image = |factor| FaceImage { levels: levels.clone(), factor: Vec3::splat(factor) };
+    let corners = [Vec2::ZERO, Vec2::X, Vec2::Y];
+    let faces = vec![
+        FaceTexture { image: 0, corners },
+        FaceTexture { image: 1, corners: [Vec2::X, Vec2::ZERO, Vec2::Y] },
+        FaceTexture::NONE,
+    ];
+    let of =
+        |x: f32| [0.0, 1.0, 0.0].iter().zip([0.0, 0.0, 1.0]).map(move |(&dx, y)| Vec3::new(x + dx, y, 0.0));
+    Cloud {
+        positions: [0.0, 2.0, 4.0].into_iter().flat_map(of).collect(),
+        triangles: (0..3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
+        colours: Some(Colours::Linear(vec![[0.1, 0.2, 0.3]; 9])),
+        face_textures: Some(FaceTextures { images: vec![image(1.0), image(0.5)], faces }),
+        ..Default::default()
+    }
+}
+
+#[test]
+fn triangles_have_textures_of_their_own() {
+    let mesh = Mesh::new("mesh", &textured_faces()).unwrap();
+    let expected = [(0.25, [1.0, 0.0, 0.0]), (2.15, [0.0, 0.0, 0.5]), (4.25, [0.1, 0.2, 0.3])];
+    for (x, colour) in expected {
+        let hit = mesh.trace(DVec3::new(x, 0.1, 4.0), DVec3::NEG_Z).unwrap();
+        assert!(DVec3::from(hit.albedo.unwrap()).abs_diff_eq(DVec3::from(colour), 1e-6), "{x}: {hit:?}");
+    }
+}
+
 /// Two triangles meet at a corner of the cube's horizontal face, and one at that of each vertical face.
 #[test]
 fn normals_weigh_triangles_by_their_angles() {
@@ -190,6 +222,8 @@ fn digests_tell_meshes_apart() {
     };
     let digest = |cloud: &Cloud| Mesh::new("mesh", cloud).unwrap().digest();
     assert_eq!(digest(&usual), digest(&usual.clone()));
+    let mut other_faces = textured_faces();
+    other_faces.face_textures.as_mut().unwrap().faces[0].corners[1].y = 0.5;
     let all = [
         usual.clone(),
         Cloud { origin: DVec3::X, ..usual.clone() },
@@ -199,6 +233,9 @@ fn digests_tell_meshes_apart() {
         Cloud { colours: None, ..usual },
         textured([Vec2::ZERO, Vec2::X, Vec2::Y]),
         textured([Vec2::ZERO, Vec2::X, Vec2::ONE]),
+        textured_faces(),
+        Cloud { face_textures: None, ..textured_faces() },
+        other_faces,
     ];
     let mut digests = all.each_ref().map(digest).to_vec();
     digests.sort();
