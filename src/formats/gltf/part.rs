@@ -106,8 +106,8 @@ impl<'a> Parts<'a> {
                 return Err("its indices are not unsigned integers: fetch or write it again".into());
             }
             let corners = indices.as_ref().map_or(parts.all[index].position.count, |indices| indices.count);
-            // A triangle for each corner of a strip.
-            total.add(corners, 12)?;
+            // A triangle for each corner of a strip, with its texture coordinates and its corners as given.
+            total.add(corners, if parts.all[index].image().is_some() { 64 } else { 12 })?;
             parts.all[index].primitives.push((mode, indices));
         }
         for part in &mut parts.all {
