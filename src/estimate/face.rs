@@ -83,7 +83,8 @@ impl Face<'_> {
     }
 
     fn exceeds(&self, limits: &Limits, part: &Part) -> bool {
-        self.texture.as_ref().is_some_and(|texture| texture.error(part) > limits.texture)
+        let texture = self.texture.as_ref().filter(|_| limits.texture < f64::INFINITY);
+        texture.is_some_and(|texture| texture.error(part) > limits.texture)
             || limits.ellipse < f64::INFINITY && self.error(part, limits.extent) > limits.ellipse
     }
 

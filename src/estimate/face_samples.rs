@@ -41,7 +41,8 @@ const ALIKE: f64 = 0.707;
 /// Replaces the discs of vertices by ellipses on the triangles, if [`MeshSampling`] says so. Only of meshes whose radii are all of faces, and
 /// without attributes that belong to points.
 pub(super) fn replace(draft: &mut Draft, how: &Estimate) {
-    let colours = draft.face_textures.as_ref().map(FaceColours::new);
+    let textures = draft.face_textures.as_ref().filter(|_| how.mesh_sampling != MeshSampling::Vertices);
+    let colours = textures.map(FaceColours::new);
     let Some(areas) = areas_of_sampled(draft, colours.as_ref(), how) else { return };
     let mesh = Mesh::new(draft, colours.as_ref(), how.outlines);
     let kept: Vec<usize> = (0..draft.triangles.len()).filter(|&i| areas[i] > 0.0).collect();
