@@ -152,17 +152,25 @@ impl MipMap {
             .map(|level| self.level_size(level).map(|side| side as usize))
             .map(|[w, h]| w * h)
             .sum();
-        let at = DVec2::new(at.x - at.x.floor(), 1.0 - (at.y - at.y.floor()));
-        let place = at * DVec2::from(size.map(f64::from)) - 0.5;
-        let (corner, part) = (place.floor(), place - place.floor());
-        let texel = |dx: i64, dy: i64| {
-            let [x, y] = [(corner.x as i64 + dx, size[0]), (corner.y as i64 + dy, size[1])]
-                .map(|(i, side)| i.rem_euclid(side.into()) as usize);
-            self.texels.light(first + y * size[0] as usize + x)
-        };
-        let row = |dy: i64| texel(0, dy).lerp(texel(1, dy), part.x);
-        row(0).lerp(row(1), part.y)
+        let (texels, part) = texels_around(at, size);
+        let [upper, lower] = texels
+            .map(|row| row.map(|i| self.texels.light(first + i)))
+            .map(|[left, right]| left.lerp(right, part.x));
+        upper.lerp(lower, part.y)
     }
+}
+
+/// The four texels about texture coordinates, in rows of a picture of this size that repeats, and the place between their centres.
+pub(super) fn texels_around(at: DVec2, size: [u32; 2]) -> ([[usize; 2]; 2], DVec2) {
+    let at = DVec2::new(at.x - at.x.floor(), 1.0 - (at.y - at.y.floor()));
+    let place = at * DVec2::from(size.map(f64::from)) - 0.5;
+    let corner = place.floor();
+    let texel = |dx: i64, dy: i64| {
+        let [x, y] = [(corner.x as i64 + dx, size[0]), (corner.y as i64 + dy, size[1])]
+            .map(|(i, side)| i.rem_euclid(side.into()) as usize);
+        y * size[0] as usize + x
+    };
+    ([0, 1].map(|dy| [0, 1].map(|dx| texel(dx, dy))), place - corner)
 }
 
 /// The sRGB code of a colour.

@@ -1,7 +1,7 @@
 //! How much the colours of a texture vary within its parts.
 
-use super::texture::{MipMap, halved};
-use glam::{DVec2, DVec4, Vec4};
+use super::texture::{MipMap, halved, texels_around};
+use glam::{DVec2, Vec4};
 
 /// First and second moments of a texture's colours, a pyramid as its mip map.
 pub(crate) struct TextureDetail {
@@ -30,16 +30,11 @@ impl TextureDetail {
             return 0.0;
         }
         let (size, means) = &self.levels[(level as usize).min(self.levels.len()) - 1];
-        let at = DVec2::new(at.x - at.x.floor(), 1.0 - (at.y - at.y.floor()));
-        let place = at * DVec2::from(size.map(f64::from)) - 0.5;
-        let (corner, part) = (place.floor(), place - place.floor());
-        let texel = |dx: i64, dy: i64| {
-            let [x, y] = [(corner.x as i64 + dx, size[0]), (corner.y as i64 + dy, size[1])]
-                .map(|(i, side)| i.rem_euclid(side.into()) as usize);
-            Vec4::from(means[x + y * size[0] as usize]).as_dvec4()
-        };
-        let row = |dy: i64| texel(0, dy).lerp(texel(1, dy), part.x);
-        let mean: DVec4 = row(0).lerp(row(1), part.y);
+        let (texels, part) = texels_around(at, *size);
+        let [upper, lower] = texels
+            .map(|row| row.map(|i| Vec4::from(means[i]).as_dvec4()))
+            .map(|[left, right]| left.lerp(right, part.x));
+        let mean = upper.lerp(lower, part.y);
         (mean.w - mean.truncate().length_squared() / 3.0).max(0.0)
     }
 }
