@@ -27,6 +27,24 @@ pub fn vector(text: &str) -> Result<DVec3, String> {
     }
 }
 
+/// Parses `XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX`, or `XMIN,YMIN,XMAX,YMAX` for any z.
+pub fn bounds(text: &str) -> Result<[DVec3; 2], String> {
+    let number = |text: &str| text.trim().parse().ok().filter(|value: &f64| value.is_finite());
+    let numbers: Option<Vec<f64>> = text.split(',').map(number).collect();
+    let bounds = match numbers.as_deref() {
+        Some(&[x, y, z, x1, y1, z1]) => Some([DVec3::new(x, y, z), DVec3::new(x1, y1, z1)]),
+        Some(&[x, y, x1, y1]) => {
+            Some([DVec3::new(x, y, f64::NEG_INFINITY), DVec3::new(x1, y1, f64::INFINITY)])
+        }
+        _ => None,
+    };
+    bounds.filter(|[min, max]| min.cmple(*max).all()).ok_or_else(|| {
+        "give XMIN,YMIN,XMAX,YMAX or XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX without spaces, minima at most as large as maxima, for example \
+         --bounds=-10,0,10,20"
+            .into()
+    })
+}
+
 /// Parses a vector that is not 0; returns the unit vector.
 pub fn direction(text: &str) -> Result<DVec3, String> {
     vector(text)?.try_normalize().ok_or_else(|| "give a direction that is not 0,0,0".into())
@@ -187,6 +205,13 @@ mod tests {
         assert_eq!(vector("1,-2.5, 3e2"), Ok(DVec3::new(1.0, -2.5, 300.0)));
         for text in ["1,2", "1,2,3,4", "1,2,x", "nan,0,0", "inf,0,0", ""] {
             assert!(vector(text).is_err(), "{text}");
+        }
+        let [low, high] = [f64::NEG_INFINITY, f64::INFINITY];
+        let expected = [DVec3::new(-1.0, 2.0, low), DVec3::new(3.0, 2.0, high)];
+        assert_eq!(bounds("-1,2,3,2"), Ok(expected));
+        assert_eq!(bounds("1,2,3,4,5,6"), Ok([DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 5.0, 6.0)]));
+        for text in ["1,2,3", "1,2,3,4,5", "1,2,0,4", "1,2,3,4,5,2", "nan,0,1,1", "0,0,inf,1", ""] {
+            assert!(bounds(text).is_err(), "{text}");
         }
         assert_eq!(background("transparent").map(Background::linear), Ok(None));
         assert_eq!(background("255,0,255").map(Background::linear), Ok(Some([1.0, 0.0, 1.0])));

@@ -9,11 +9,15 @@ pub use counts::{FilterCounts, class_name};
 
 use super::declared::{Element, Kind};
 use super::source::Parsed;
+use glam::DVec3;
 use std::num::NonZeroU64;
 
 /// Conditions that all points that are read meet. Faces and lines of points that are left out are left out, too.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Filter {
+    /// Least and greatest coordinates, in the file's own coordinate system, both included; infinite ones do not bound. `None` for all. Nodes of
+    /// COPC outside are not read.
+    pub bounds: Option<[DVec3; 2]>,
     /// Classes, by the property `classification`; `None` for all.
     pub classes: Option<Vec<u8>>,
     /// Returns of a pulse, by `return_number` and `number_of_returns`; `None` for all.
@@ -51,7 +55,8 @@ pub(super) const PROPERTIES: [&str; 3] = ["classification", "return_number", "nu
 impl Filter {
     /// Whether all points are read.
     pub fn is_none(&self) -> bool {
-        self.classes.is_none() && self.returns.is_none() && self.step() == 1
+        let Self { bounds, classes, returns, .. } = self;
+        bounds.is_none() && classes.is_none() && returns.is_none() && self.step() == 1
     }
 
     /// Distance of the points that are read, in points of the file.
@@ -95,11 +100,16 @@ impl Filter {
         Ok(columns)
     }
 
-    /// Whether a point with these values of the [`PROPERTIES`] is read.
-    pub(super) fn keeps(&self, [class, number, count]: [f64; 3]) -> bool {
+    /// Whether a position is within the bounds.
+    pub(super) fn contains(&self, at: DVec3) -> bool {
+        self.bounds.is_none_or(|[min, max]| at.cmpge(min).all() && at.cmple(max).all())
+    }
+
+    /// Whether a point at a position with these values of the [`PROPERTIES`] is read.
+    pub(super) fn keeps(&self, at: DVec3, [class, number, count]: [f64; 3]) -> bool {
         let of_class = |classes: &Vec<u8>| classes.iter().any(|own| f64::from(*own) == class);
         let of_pulse = |returns: Returns| returns.keeps(number, count);
-        self.classes.as_ref().is_none_or(of_class) && self.returns.is_none_or(of_pulse)
+        self.contains(at) && self.classes.as_ref().is_none_or(of_class) && self.returns.is_none_or(of_pulse)
     }
 }
 

@@ -99,8 +99,8 @@ pub struct ReadOptions {
     pub intensity: bool,
     /// Which points are read.
     pub filter: Filter,
-    /// Number of points that suffice; `None` reads all. Of a file with [`levels`] the finer ones are not read once the coarser ones have as many,
-    /// and the radii, which belong to all points, are left out; other files are read whole.
+    /// Number of points that suffice; `None` reads all. Of a file with [`levels`] the finer ones are not read once the coarser ones have as many
+    /// within the filter's bounds, and the radii, which belong to all points, are left out; other files are read whole.
     pub min_points: Option<u64>,
     /// Whether points are counted by class and return: [`Report::counts`](super::Report::counts).
     pub counts: bool,

@@ -185,6 +185,25 @@ fn classes_and_returns_can_be_selected() {
 }
 
 #[test]
+fn points_in_a_box_can_be_read() {
+    let program = Program::new();
+    program.write("a.txt", plane(|_, _| String::new()));
+    let info = |options: &str| program.run(&format!("info a.txt {options}"));
+    for (bounds, surfels) in [("", 441), ("--bounds=0.1,-5,0.3,0.2", 39), ("--bounds 0.1,0,-1,0.3,0.2,1", 9)]
+    {
+        let run = info(bounds);
+        assert!(run.text().contains(&format!("\nsurfels: {surfels}\n")), "{bounds}: {}", run.text());
+    }
+    let rendered = program.run("render a.txt -o out.png --reference --size 16x16 --bounds 0,0,4,4");
+    assert!(rendered.err.contains("320 of 441 points left out by the filter"), "{}", rendered.err);
+    assert!(info("--bounds 1,2,3").error(2).contains("XMIN,YMIN,XMAX,YMAX"));
+    let none = info("--bounds 0,0,1,1,1,2");
+    assert!(none.error(1).contains("choose other bounds"), "{}", none.err);
+    let scene = program.run("render scene:sphere?points=100 -o a.png --reference --bounds 0,0,1,1");
+    assert!(scene.error(2).contains("a built-in scene is rendered whole"), "{}", scene.err);
+}
+
+#[test]
 fn one_point_in_n_can_be_read() {
     let program = Program::new();
     let run = |command: &str| program.run(&format!("{command} {}", sample("format7.laz")));

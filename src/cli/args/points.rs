@@ -1,7 +1,8 @@
 //! Options of every command that reads points: estimation of missing attributes, and colours.
 
-use crate::cli::values::{ColourBy, choice, colour_by, positive};
+use crate::cli::values::{ColourBy, bounds, choice, colour_by, positive};
 use clap::Args;
+use glam::DVec3;
 use std::num::NonZeroU64;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -18,6 +19,11 @@ pub struct Points {
     /// Renders N points of each file, evenly spread, with estimated radii and without lines and faces; of COPC its coarse levels are read alone [default: all, as the file has them]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub points: Option<u64>,
+    /// Reads points in this box alone, in the files' coordinates: XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX, or XMIN,YMIN,XMAX,YMAX for any z
+    ///
+    /// Of COPC, nodes of its octree outside of the box are not read.
+    #[arg(long, value_name = "MIN,MAX", value_parser = bounds, allow_hyphen_values = true)]
+    pub bounds: Option<[DVec3; 2]>,
     /// Reads points of these classes alone, as 2,6 for ground and buildings
     #[arg(long, value_name = "CLASS,…", value_delimiter = ',')]
     pub class: Option<Vec<u8>>,
@@ -68,7 +74,7 @@ impl Points {
     /// Which points are read.
     pub fn filter(&self) -> Filter {
         let every = self.every.and_then(NonZeroU64::new);
-        Filter { classes: self.class.clone(), returns: self.returns, every }
+        Filter { bounds: self.bounds, classes: self.class.clone(), returns: self.returns, every }
     }
 
     /// The options of the estimation.

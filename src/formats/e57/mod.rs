@@ -170,7 +170,7 @@ fn origin_before(
             sample.push(reader.position(packets, index * (reader.points() / some), &mut scratch)?);
         }
     }
-    Ok(origin_of_some(sample))
+    Ok(origin_of_some(sample, &layout.filter))
 }
 
 /// The points with their coordinates before poses are applied, if all attributes are wanted and there are poses.

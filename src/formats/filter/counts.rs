@@ -38,7 +38,8 @@ pub fn class_name(class: i64) -> Option<&'static str> {
     CLASSES.get(usize::try_from(class).ok()?).copied()
 }
 
-/// Numbers of points that each condition of a [`Filter`] keeps by itself, of all points but those that [`Filter::every`] leaves out.
+/// Numbers of points that each of these conditions of a [`Filter`] keeps by itself, of the points within [`Filter::bounds`] that
+/// [`Filter::every`] does not leave out.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FilterCounts {
     /// Points by class; `None` if they have no property `classification`.
@@ -67,15 +68,16 @@ pub(in crate::formats) struct RowCounts {
 }
 
 impl RowCounts {
-    /// Counts rows by their columns of the [`PROPERTIES`](super::PROPERTIES).
-    pub fn of([classes, numbers, counts]: [&[f64]; 3]) -> Self {
+    /// Counts rows by their columns of the [`PROPERTIES`](super::PROPERTIES): those that `is_counted` accepts by their indices.
+    pub fn of([classes, numbers, counts]: [&[f64]; 3], is_counted: impl Fn(usize) -> bool) -> Self {
         let mut all = Self { classes: [0; 256], returns: [0; 3] };
-        for class in classes {
+        for (_, class) in classes.iter().enumerate().filter(|(row, _)| is_counted(*row)) {
             // Only whole numbers in range are classes that a filter can choose.
             let code = *class as u8;
             all.classes[usize::from(code)] += u64::from(f64::from(code) == *class);
         }
-        for (number, count) in numbers.iter().zip(counts) {
+        let pulses = numbers.iter().zip(counts).enumerate();
+        for (_, (number, count)) in pulses.filter(|(row, _)| is_counted(*row)) {
             for (kept, returns) in all.returns.iter_mut().zip(Returns::ALL) {
                 *kept += u64::from(returns.keeps(*number, *count));
             }

@@ -1,12 +1,20 @@
 use super::*;
 use crate::formats::round_trip::all;
+use crate::formats::table::points::origin_of_some;
 use crate::formats::table::{Arrays, Layout};
-use crate::formats::{Dropped, Faces, Loaded, ReadOptions, read_bytes};
+use crate::formats::{Attribute, Dropped, Faces, Loaded, ReadOptions, read_bytes};
+use glam::Vec3;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// Options that keep all attributes of one point in `every`.
 fn one_in(every: u64) -> ReadOptions {
     ReadOptions { filter: Filter { every: NonZeroU64::new(every), ..Default::default() }, ..all() }
+}
+
+/// Options that keep all attributes of the points in a box.
+fn within(bounds: [DVec3; 2]) -> ReadOptions {
+    ReadOptions { filter: Filter { bounds: Some(bounds), ..Default::default() }, ..all() }
 }
 
 #[test]
@@ -71,6 +79,19 @@ fn files() -> Vec<(String, Vec<u8>)> {
     ]
 }
 
+/// A part of a large survey keeps its digits: its positions are relative to its own middle.
+#[test]
+fn the_origin_is_that_of_the_points_in_the_box() {
+    let row: Vec<DVec3> = (0..1000).map(|i| DVec3::new(5e5 + 100.0 * f64::from(i), 4e6, 0.0)).collect();
+    let bounds = [DVec3::new(5.7e5, 0.0, -1.0), DVec3::new(5.71e5, 5e6, 1.0)];
+    let filter = Filter { bounds: Some(bounds), ..Default::default() };
+    let far = |origin: DVec3| (origin.x - 5.705e5).abs();
+    assert!(far(origin_of_some(row.clone(), &Filter::default()).unwrap()) > 1e4);
+    assert!(far(origin_of_some(row.clone(), &filter).unwrap()) < 2e3);
+    // Too few of them say nothing of the others.
+    assert_eq!(origin_of_some(row[..707].to_vec(), &filter), None);
+}
+
 #[test]
 fn numbers_of_points_are_those_from_the_first_on() {
     let thinned = |every, count| one_in(every).filter.thinned(count);
@@ -93,14 +114,63 @@ fn every_reader_reads_one_point_in_n() {
             assert_eq!((cloud.len(), report.points), (indices.len(), whole.report.points), "{name}");
             let thinned = (whole.cloud.len() - cloud.len()) as u64;
             assert_eq!(report.dropped, Dropped { thinned, ..Default::default() }, "{name}");
-            for (of_all, own) in whole.attributes.iter().zip(&attributes) {
-                let expected = indices.iter().map(|&i| of_all.values.get(i).map(f64::to_bits));
-                let values = (0..cloud.len()).map(|i| own.values.get(i).map(f64::to_bits));
-                assert!(values.eq(expected), "{name}: {} of one in {every}", own.name);
-            }
-            assert!(whole.attributes.len() >= 3 && whole.attributes.len() == attributes.len(), "{name}");
+            assert_points(&attributes, &whole, &indices, &format!("{name}: one in {every}"));
         }
     }
+}
+
+/// Asserts that attributes are those of some of the points.
+fn assert_points(attributes: &[Attribute], whole: &Loaded, indices: &[usize], what: &str) {
+    assert!(attributes.len() >= 3 && attributes.len() == whole.attributes.len(), "{what}");
+    for (own, of_all) in attributes.iter().zip(&whole.attributes) {
+        let expected = indices.iter().map(|&i| of_all.values.get(i).map(f64::to_bits));
+        let values = (0..indices.len()).map(|i| own.values.get(i).map(f64::to_bits));
+        assert!(values.eq(expected), "{what}: {}", own.name);
+    }
+}
+
+#[test]
+fn every_reader_reads_the_points_in_a_box() {
+    let mut files = files();
+    if cfg!(feature = "e57") {
+        files.push(sample("scans.e57"));
+    }
+    for (name, bytes) in files {
+        let read = |options: &ReadOptions| read_bytes(&name, &bytes, options).unwrap();
+        let whole = read(&all());
+        let x = |position: &Vec3| whole.cloud.origin.x + f64::from(position.x);
+        let mut sorted: Vec<f64> = whole.cloud.positions.iter().map(x).collect();
+        sorted.sort_by(f64::total_cmp);
+        sorted.dedup();
+        // Between coordinates of points, which are rounded.
+        let [low, high] =
+            [4, 2].map(|part| sorted.len() / part).map(|rank| sorted[rank - 1].midpoint(sorted[rank]));
+        let is_inside = |i: &usize| (low..=high).contains(&x(&whole.cloud.positions[*i]));
+        let indices: Vec<usize> = (0..whole.cloud.len()).filter(is_inside).collect();
+        let bounds = [f64::NEG_INFINITY, f64::INFINITY].map(DVec3::splat);
+        let options = within([bounds[0].with_x(low), bounds[1].with_x(high)]);
+        let Loaded { cloud, report, attributes } = read(&options);
+        assert_eq!((cloud.len(), report.points), (indices.len(), whole.report.points), "{name}");
+        let filtered = (whole.cloud.len() - cloud.len()) as u64;
+        assert!(filtered > 0 && !cloud.is_empty(), "{name}");
+        assert_eq!(report.dropped, Dropped { filtered, ..whole.report.dropped }, "{name}");
+        assert_points(&attributes, &whole, &indices, &name);
+        assert_eq!(read(&within(bounds)), whole, "{name}");
+    }
+}
+
+#[test]
+fn sides_of_the_box_belong_to_it_and_points_outside_are_not_counted() {
+    let text =
+        "//x y z classification\n0 0 0 2\n1 0 0 2\n2 0 0 5\n3 0 0 5\nnan 0 0 2\n5 0 0 2\n2 1 0 5\n2 0 -1 5\n";
+    let options = ReadOptions { counts: true, ..within([DVec3::X, DVec3::new(3.0, 0.5, 0.0)]) };
+    let Loaded { cloud, report, .. } = read_bytes("a.xyz", text.as_bytes(), &options).unwrap();
+    assert_eq!(cloud.positions.iter().map(|position| position.x).collect::<Vec<_>>(), [1.0, 2.0, 3.0]);
+    assert_eq!(report.dropped, Dropped { position: 1, filtered: 4, ..Default::default() });
+    let counts = report.counts.and_then(|counts| counts.classes);
+    assert_eq!(counts, Some(BTreeMap::from([(2, 1), (5, 2)])));
+    let none = read_bytes("a.xyz", text.as_bytes(), &within([DVec3::splat(9.0); 2])).unwrap_err().to_string();
+    assert!(none.contains("none of its 8 points is left by the filter: choose other bounds"), "{none}");
 }
 
 /// The points of two scans count on, those without a position too.

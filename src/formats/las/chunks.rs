@@ -22,6 +22,8 @@ pub struct Chunk {
 /// How the points of a file are compressed.
 pub struct Chunks {
     pub all: Vec<Chunk>,
+    /// Number of points of chunks that are left out as they are outside of the bounds.
+    pub outside: u64,
     items: Vec<LazItem>,
 }
 
@@ -63,7 +65,7 @@ impl Chunks {
             let fixed = (!record.uses_variable_size_chunks()).then(|| record.chunk_size().into());
             place(&entries, fixed, header.count, [header.start + OFFSET, source.size()])?
         };
-        Ok(Self { all, items })
+        Ok(Self { all, outside: 0, items })
     }
 
     /// Decompresses the points of a chunk: calls `each` with the records of at most `most` points at a time.

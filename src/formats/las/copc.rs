@@ -6,7 +6,7 @@
 #[cfg(test)]
 mod tests;
 
-use super::chunks::Chunks;
+use super::chunks::{Chunk, Chunks};
 use super::header::Header;
 use crate::formats::source::{Parsed, Source};
 use glam::DVec3;
@@ -24,6 +24,9 @@ pub const CELLS: u32 = 128;
 
 /// Most levels of an octree: the cells of more have sides of a part in 2³² of the root's.
 const MOST_LEVELS: usize = 32;
+
+/// Part of a cell's side by which it is grown where it is asked whether it has points: writers round differently.
+const MARGIN: f64 = 0.01;
 
 /// The description of an octree.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +59,25 @@ impl Info {
             root: [words[5], words[6]],
             gps_time: [number(7), number(8)],
         })
+    }
+
+    /// Whether the root's cell has all points of the file.
+    fn holds(&self, header: &Header) -> bool {
+        let raw = &header.raw;
+        let [min, max] =
+            [[raw.min_x, raw.min_y, raw.min_z], [raw.max_x, raw.max_y, raw.max_z]].map(DVec3::from);
+        let reach = self.half_side * (1.0 + MARGIN);
+        reach.is_finite()
+            && (min - self.centre).cmpge(DVec3::splat(-reach)).all()
+            && (max - self.centre).cmple(DVec3::splat(reach)).all()
+    }
+
+    /// Whether a node's cell, grown by a margin for rounded coordinates, has a place within the bounds.
+    fn touches(&self, key: Key, [min, max]: [DVec3; 2], scale: DVec3) -> bool {
+        let side = 2.0 * self.half_side / f64::from(key.level).exp2();
+        let least = self.centre - self.half_side + side * DVec3::from(key.cell.map(f64::from));
+        let margin = scale + MARGIN * side;
+        (least - margin).cmple(max).all() && (least + side + margin).cmpge(min).all()
     }
 
     /// The data of its record.
@@ -102,6 +124,12 @@ impl Entry {
         }
     }
 
+    /// Whether the node's points are those of a chunk.
+    fn is(&self, chunk: &Chunk) -> bool {
+        let size: [u64; 2] = [self.size, self.points].map(|number| number.unsigned_abs().into());
+        size == [chunk.length, chunk.rows as u64]
+    }
+
     pub fn to_bytes(self) -> [u8; Self::SIZE] {
         let Self { key: Key { level, cell: [x, y, z] }, offset, size, points } = self;
         let [low, high] = [offset as u32, (offset >> 32) as u32];
@@ -113,7 +141,7 @@ impl Entry {
 /// The octree of a file.
 #[derive(Debug)]
 pub struct Octree {
-    spacing: f64,
+    info: Info,
     /// All nodes with points.
     nodes: Vec<Entry>,
 }
@@ -147,61 +175,81 @@ impl Octree {
                 }
             }
         }
-        Ok(Some(Self { spacing: info.spacing, nodes }))
+        Ok(Some(Self { info, nodes }))
     }
 
     /// Number of points of each level.
     pub fn levels(&self) -> Vec<u64> {
-        let mut levels = Vec::new();
-        for Entry { key, points, .. } in &self.nodes {
-            let level = key.level as usize;
-            levels.resize(levels.len().max(level + 1), 0);
-            levels[level] += u64::from(points.unsigned_abs());
-        }
-        levels
+        levels(&self.nodes)
     }
 
-    /// Leaves out the chunks of fine levels: those that are not needed for `least` points.
-    pub fn keep_coarse(&self, chunks: &mut Chunks, least: u64) -> Parsed<()> {
-        let mut points = 0;
-        let needed = self.levels().into_iter().take_while(|count| {
-            let is_needed = points < least;
-            points += count;
-            is_needed
-        });
-        let needed = needed.count() as u32;
-        let by_offset: HashMap<u64, &Entry> = self.nodes.iter().map(|node| (node.offset, node)).collect();
-        let level = |chunk: &super::chunks::Chunk| {
-            let node = by_offset.get(&chunk.start).filter(|node| {
-                [node.size.unsigned_abs().into(), u64::from(node.points.unsigned_abs())]
-                    == [chunk.length, chunk.rows as u64]
-            });
-            node.map(|node| node.key.level).ok_or_else(|| {
-                damaged(&format!("no node is the chunk of {} points at byte {}", chunk.rows, chunk.start))
-            })
-        };
-        let mut kept = Vec::new();
+    /// Leaves out the chunks of nodes outside of the bounds, and of the others those of fine levels that are not needed for `least` points.
+    pub fn leave_out(
+        &self,
+        chunks: &mut Chunks,
+        header: &Header,
+        bounds: Option<[DVec3; 2]>,
+        least: Option<u64>,
+    ) -> Parsed<()> {
+        // A cube that does not hold the points says nothing about where they are.
+        let bounds = bounds.filter(|_| self.info.holds(header));
+        let scale = DVec3::from([0, 1, 2].map(|axis| header.scale(axis)[0].abs()));
+        let is_inside = |node: &Entry| bounds.is_none_or(|bounds| self.info.touches(node.key, bounds, scale));
+        let (inside, outside): (Vec<Entry>, Vec<Entry>) = self.nodes.iter().partition(|node| is_inside(node));
+        let needed = least.map_or(u32::MAX, |least| levels_for(&inside, least));
+        let nodes = inside.iter().map(|node| (node, true)).chain(outside.iter().map(|node| (node, false)));
+        let by_offset: HashMap<u64, (&Entry, bool)> = nodes.map(|node| (node.0.offset, node)).collect();
+        let (mut kept, mut left_out) = (Vec::new(), 0);
         for chunk in &chunks.all {
-            if level(chunk)? < needed {
-                kept.push(*chunk);
+            match by_offset.get(&chunk.start).filter(|(node, _)| node.is(chunk)) {
+                Some((node, true)) if node.key.level < needed => kept.push(*chunk),
+                Some((_, true)) => {}
+                Some((_, false)) => left_out += chunk.rows as u64,
+                None => {
+                    let what =
+                        format!("no node is the chunk of {} points at byte {}", chunk.rows, chunk.start);
+                    return Err(damaged(&what));
+                }
             }
         }
-        chunks.all = kept;
+        (chunks.all, chunks.outside) = (kept, left_out);
         Ok(())
     }
 
     /// Number of levels and nodes, and the distances of their points.
     pub fn summary(&self) -> String {
         let levels = self.levels();
-        let finest = self.spacing / f64::from(levels.len().saturating_sub(1) as u32).exp2();
+        let finest = self.info.spacing / f64::from(levels.len().saturating_sub(1) as u32).exp2();
         format!(
             "{} nodes in {} levels, spacing {:.3} to {finest:.3}, points by level {}",
             self.nodes.len(),
             levels.len(),
-            self.spacing,
+            self.info.spacing,
             levels.iter().map(u64::to_string).collect::<Vec<_>>().join(" ")
         )
     }
+}
+
+/// Number of points of each level of some nodes.
+fn levels(nodes: &[Entry]) -> Vec<u64> {
+    let mut levels = Vec::new();
+    for Entry { key, points, .. } in nodes {
+        let level = key.level as usize;
+        levels.resize(levels.len().max(level + 1), 0);
+        levels[level] += u64::from(points.unsigned_abs());
+    }
+    levels
+}
+
+/// Number of the coarsest levels of some nodes that have `least` points, or all.
+fn levels_for(nodes: &[Entry], least: u64) -> u32 {
+    let mut points = 0;
+    let needed = levels(nodes).into_iter().take_while(|count| {
+        let is_needed = points < least;
+        points += count;
+        is_needed
+    });
+    needed.count() as u32
 }
 
 fn damaged(what: &str) -> crate::error::Cause {

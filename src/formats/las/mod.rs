@@ -31,6 +31,7 @@ use super::{Inspected, Loaded, ReadOptions, Report};
 use crate::Progress;
 use crate::error::Cause;
 use crate::geometry::{Cloud, Colours};
+use chunks::Chunks;
 use copc::Octree;
 use header::Header;
 use stored::Stored;
@@ -73,11 +74,9 @@ impl Reader for Las {
         let facts = octree_facts(&octree);
         let loaded = Layout::of(&element, options, false).and_then(|layout| {
             let mut points = Stored::find(&header, &input.source)?;
-            let origin = points.origin(&header, &input.source)?;
-            if let Some(least) = options.min_points
-                && let (Stored::Chunks(chunks), Some(octree)) = (&mut points, octree?)
-            {
-                octree.keep_coarse(chunks, least)?;
+            let origin = points.origin(&header, &input.source, &options.filter)?;
+            if let Stored::Chunks(chunks) = &mut points {
+                leave_out(chunks, &header, octree, options)?;
             }
             let layout = origin.map_or(layout.clone(), |origin| layout.relative_to(origin));
             let table = read::Table {
@@ -101,6 +100,24 @@ impl Reader for Las {
         let octree = Octree::read(&Header::read(input)?, &input.source)?;
         Ok(octree.map(|octree| octree.levels()).unwrap_or_default())
     }
+}
+
+/// Leaves out the chunks of an octree that are not needed. Damage to it matters only to who reads coarse levels.
+fn leave_out(
+    chunks: &mut Chunks,
+    header: &Header,
+    octree: Parsed<Option<Octree>>,
+    options: &ReadOptions,
+) -> Parsed<()> {
+    // One point in some is counted from the first of the file.
+    let bounds = options.filter.bounds.filter(|_| options.filter.step() == 1);
+    if bounds.is_none() && options.min_points.is_none() {
+        return Ok(());
+    }
+    let kept = octree.and_then(|octree| {
+        octree.map_or(Ok(()), |octree| octree.leave_out(chunks, header, bounds, options.min_points))
+    });
+    if options.min_points.is_some() { kept } else { Ok(()) }
 }
 
 /// What is reported of the octree of a file, if it has one. Damage to it does not matter to who reads all points.

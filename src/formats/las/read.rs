@@ -67,8 +67,8 @@ impl Table<'_> {
                 Err(damaged(index, chunk, &cause.to_string()).into())
             })
         })?;
-        let left_out = self.header.count - count;
-        Ok((arrays, Tally { thinned: tally.thinned + left_out, ..tally }))
+        let (outside, left_out) = (chunks.outside, self.header.count - count - chunks.outside);
+        Ok((arrays, Tally { thinned: tally.thinned + left_out, outside, ..tally }))
     }
 
     fn convert(&self, records: &[u8], used: &[(usize, &Field)], rows: &mut Rows) {

@@ -2,6 +2,7 @@
 
 use super::chunks::Chunks;
 use super::header::Header;
+use crate::formats::Filter;
 use crate::formats::source::{Parsed, Source};
 use crate::formats::table::points::{MANY_POINTS, SOME_POINTS, origin_of_some};
 use glam::DVec3;
@@ -13,9 +14,6 @@ pub enum Stored {
     /// Compressed chunks.
     Chunks(Chunks),
 }
-
-/// Least number of chunks for the origin.
-const LEAST: usize = 8;
 
 impl Stored {
     /// Finds the points, and returns an error if they cannot be those that the header declares.
@@ -36,8 +34,8 @@ impl Stored {
         .into())
     }
 
-    /// The origin of many points; `None` for few, whose origin all of them determine.
-    pub fn origin(&self, header: &Header, source: &Source) -> Parsed<Option<DVec3>> {
+    /// The origin of many points that the filter keeps; `None` for few, whose origin all of them determine.
+    pub fn origin(&self, header: &Header, source: &Source, filter: &Filter) -> Parsed<Option<DVec3>> {
         if header.count < MANY_POINTS {
             return Ok(None);
         }
@@ -49,12 +47,9 @@ impl Stored {
             // The first point of a chunk is not compressed.
             Self::Chunks(chunks) => chunks.all.iter().map(|chunk| chunk.start).collect(),
         };
-        if starts.len() < LEAST {
-            return Ok(None);
-        }
         let sample: Parsed<Vec<DVec3>> =
             starts.into_iter().map(|start| position(header, source, start)).collect();
-        Ok(origin_of_some(sample?))
+        Ok(origin_of_some(sample?, filter))
     }
 }
 

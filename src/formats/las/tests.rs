@@ -305,7 +305,7 @@ fn classes_and_returns_are_selected() {
     assert_eq!(kept(classes(&[2, 6])), expected(|i| [2, 6].contains(&(i % 32))));
     assert_eq!(kept(returns(Returns::First)), expected(|i| i % 5 == 0));
     assert_eq!(kept(returns(Returns::Last)), expected(|i| i % 5 == 4));
-    let both = Filter { classes: Some(vec![4, 5]), returns: Some(Returns::Last), every: None };
+    let both = Filter { classes: Some(vec![4, 5]), returns: Some(Returns::Last), ..Default::default() };
     assert_eq!(kept(both), expected(|i| i % 32 == 4 && i % 5 == 4));
     let none = read(returns(Returns::Single)).unwrap_err().to_string();
     assert!(none.contains("none of its 60 points is left by the filter"), "{none}");

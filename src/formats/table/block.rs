@@ -1,6 +1,6 @@
 //! A block of vertex records as columns of numbers, independent of the encoding.
 
-use super::columns::COLUMNS;
+use super::columns::{COLUMNS, POSITION};
 use super::layout::Layout;
 use glam::DVec3;
 
@@ -53,6 +53,11 @@ impl Block {
         for &(column, index) in used {
             self.column_mut(column).iter_mut().zip(rows).for_each(|(to, row)| *to = row[index]);
         }
+    }
+
+    /// The position of a used row.
+    pub fn position(&self, row: usize) -> DVec3 {
+        DVec3::from([0, 1, 2].map(|axis: usize| self.values[(POSITION + axis) * ROWS + row]))
     }
 
     /// Three consecutive columns, row by row.

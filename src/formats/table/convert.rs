@@ -30,6 +30,8 @@ pub struct Tally {
     pub transparent: u64,
     pub thinned: u64,
     pub filtered: u64,
+    /// Points that were not read, as all of their node is outside of the filter's bounds.
+    pub outside: u64,
     /// Invalid clip lines.
     pub clip_lines: u64,
     /// Invalid normalization weights.
@@ -47,6 +49,7 @@ impl Tally {
         self.transparent += other.transparent;
         self.thinned += other.thinned;
         self.filtered += other.filtered;
+        self.outside += other.outside;
         self.clip_lines += other.clip_lines;
         self.weights += other.weights;
         self.lacking |= other.lacking;
@@ -99,7 +102,8 @@ pub fn convert(block: &Block, layout: &Layout, out: &mut Slices) -> Tally {
     out.scalar.iter_mut().zip(block.column(SCALAR)).for_each(|(to, value)| *to = *value);
     if layout.counts {
         let columns = [0, 1, 2].map(|index| block.column(FILTER + index));
-        tally.counts = Some(Box::new(RowCounts::of(columns)));
+        let is_counted = |row| layout.filter.contains(block.position(row));
+        tally.counts = Some(Box::new(RowCounts::of(columns, is_counted)));
     }
     // Here, while the entries are in the cache.
     tally.lacking = !layout.has_normals() || !layout.has_radii();
@@ -147,7 +151,7 @@ where
 
 /// Whether the filter keeps a row.
 fn is_kept(block: &Block, layout: &Layout, row: usize) -> bool {
-    layout.filter.keeps([0, 1, 2].map(|index| block.column(FILTER + index)[row]))
+    layout.filter.keeps(block.position(row), [0, 1, 2].map(|index| block.column(FILTER + index)[row]))
 }
 
 /// Drops the positions of points that the filter does not keep; returns the number of those that had one.

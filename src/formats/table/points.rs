@@ -8,7 +8,7 @@ use crate::error::Cause;
 use crate::formats::attributes::{Attribute, Values};
 use crate::formats::declared::Element;
 use crate::formats::source::Parsed;
-use crate::formats::{Dropped, FilterCounts};
+use crate::formats::{Dropped, Filter, FilterCounts};
 use crate::geometry::{Clip, Clips, Cloud, Colours, View, Viewpoints, Weights};
 use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
@@ -60,13 +60,14 @@ impl Points {
     pub fn new(mut arrays: Arrays, tally: Tally, layout: &Layout) -> Parsed<Self> {
         let read = arrays.narrow.len().max(arrays.wide.len());
         let read = u32::try_from(read).map_err(|_| "more than 2³² − 1 points: split the file")?;
-        let Tally { dropped, transparent, thinned, filtered, .. } = tally;
-        let dropped = Dropped { position: dropped, transparent, thinned, filtered };
-        let count = u64::from(read) + thinned;
+        let Tally { dropped, transparent, thinned, filtered, outside, .. } = tally;
+        let unread = thinned + outside;
+        let dropped = Dropped { position: dropped, transparent, thinned, filtered: filtered + outside };
+        let count = u64::from(read) + unread;
         if dropped.total() >= count {
             return Err(nothing(count, dropped));
         }
-        let map = (dropped.total() > thinned).then(|| leave_out(&mut arrays));
+        let map = (dropped.total() > unread).then(|| leave_out(&mut arrays));
         let coordinates = std::mem::take(&mut arrays.coordinates);
         let materials = std::mem::take(&mut arrays.materials);
         let attributes = std::mem::take(&mut arrays.attributes);
@@ -159,8 +160,10 @@ impl Points {
 
 fn nothing(count: u64, dropped: Dropped) -> Cause {
     if dropped.filtered > 0 {
-        return format!("none of its {count} points is left by the filter: choose other classes or returns")
-            .into();
+        return format!(
+            "none of its {count} points is left by the filter: choose other bounds, classes or returns"
+        )
+        .into();
     }
     if dropped.thinned > 0 {
         let read = count - dropped.thinned;
@@ -282,10 +285,13 @@ pub const MANY_POINTS: u64 = 500_000;
 /// Number of points for that origin.
 pub const SOME_POINTS: u64 = 1 << 10;
 
-/// The origin of some of the points; `None` if none of them has a position.
-pub fn origin_of_some(mut sample: Vec<DVec3>) -> Option<DVec3> {
-    sample.retain(|at| is_position(*at));
-    (!sample.is_empty()).then(|| origin(sample))
+/// Least number of them.
+const LEAST: usize = 8;
+
+/// The origin of some of the points; `None` if too few of them have a position that the filter keeps.
+pub fn origin_of_some(mut sample: Vec<DVec3>, filter: &Filter) -> Option<DVec3> {
+    sample.retain(|at| is_position(*at) && filter.contains(*at));
+    (sample.len() >= LEAST).then(|| origin(sample))
 }
 
 /// Evenly spread entries.

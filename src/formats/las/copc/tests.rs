@@ -1,7 +1,8 @@
 //! A file that copclib wrote (tools/format_samples), and damage to it.
 
 use super::*;
-use crate::formats::{Loaded, ReadOptions, levels, read, read_bytes};
+use crate::formats::reader::Input;
+use crate::formats::{Filter, Loaded, ReadOptions, levels, read, read_bytes};
 use crate::geometry::Cloud;
 use std::path::PathBuf;
 
@@ -96,6 +97,81 @@ fn damage_is_reported_and_matters_to_coarse_levels_alone() {
         entries.iter().flat_map(|_| Entry { offset: page + 32, ..to_page }.to_bytes()).collect();
     let failed = read_bytes("a", &with(page as usize, &chain), &least(Some(1))).unwrap_err().to_string();
     assert!(failed.contains("named twice"), "{failed}");
+}
+
+/// The nodes of the file, and the positions of its points by their numbers.
+fn contents(file: &[u8]) -> (Octree, Vec<DVec3>) {
+    let input = Input { name: "a", source: Source::of(file), folder: None };
+    let octree = Octree::read(&Header::read(&input).unwrap(), &input.source).unwrap().unwrap();
+    let Loaded { cloud, .. } = read_bytes("a", file, &least(None)).unwrap();
+    let mut positions = vec![DVec3::NAN; cloud.len()];
+    for (intensity, position) in cloud.scalar.iter().flatten().zip(&cloud.positions) {
+        positions[(*intensity / 257.0) as usize] = cloud.origin + position.as_dvec3();
+    }
+    (octree, positions)
+}
+
+#[test]
+fn nodes_outside_of_the_bounds_are_not_read() {
+    let file = std::fs::read(path()).unwrap();
+    let (octree, positions) = contents(&file);
+    assert!(positions.iter().all(|position| position.is_finite()));
+    // In one of the eight cells of the second level, not at its sides.
+    let Info { centre, half_side, .. } = octree.info;
+    let bounds = [centre - half_side, centre - 0.05 * half_side];
+    let is_inside = |number: &u64| {
+        let at = positions[*number as usize];
+        at.cmpge(bounds[0]).all() && at.cmple(bounds[1]).all()
+    };
+    let inside: Vec<u64> = (0..60).filter(is_inside).collect();
+    let within = |min_points| {
+        let filter = Filter { bounds: Some(bounds), ..Default::default() };
+        ReadOptions { filter, ..least(min_points) }
+    };
+    let Loaded { cloud, report, .. } = read_bytes("a", &file, &within(None)).unwrap();
+    assert_eq!(numbers(&cloud), inside);
+    let filtered = 60 - inside.len() as u64;
+    assert_eq!((report.points, report.dropped.filtered, report.dropped.thinned), (60, filtered, 0));
+    // Chunks without a place inside do not matter, whatever they are.
+    let mut damaged = file.clone();
+    let outside = octree.nodes.iter().filter(|node| !octree.info.touches(node.key, bounds, DVec3::ZERO));
+    let outside: Vec<&Entry> = outside.collect();
+    assert!(outside.len() > 10 && octree.nodes.len() - outside.len() > 2, "{}", outside.len());
+    for node in outside {
+        damaged[node.offset as usize..][..node.size as usize].fill(0xff);
+    }
+    let Loaded { cloud, .. } = read_bytes("a", &damaged, &within(None)).unwrap();
+    assert_eq!(numbers(&cloud), inside);
+    assert!(read_bytes("a", &damaged, &least(None)).is_err());
+    // Levels are counted among the nodes inside: the root has 20 points, its children there fewer.
+    let Loaded { cloud, report, .. } = read_bytes("a", &damaged, &within(Some(21))).unwrap();
+    let expected: Vec<u64> = inside.iter().copied().filter(|point| point % 3 < 2).collect();
+    assert_eq!((numbers(&cloud), report.dropped.total()), (expected.clone(), 60 - expected.len() as u64));
+    assert!(expected.len() < inside.len() && report.dropped.thinned > 0);
+}
+
+#[test]
+fn a_cube_that_does_not_hold_the_points_leaves_none_out() {
+    let file = std::fs::read(path()).unwrap();
+    let (octree, positions) = contents(&file);
+    let bounds = [positions[0] - 1.0, positions[0] + 1.0];
+    let filter = Filter { bounds: Some(bounds), ..Default::default() };
+    let options = ReadOptions { filter, ..least(None) };
+    let expected = numbers(&read_bytes("a", &file, &options).unwrap().cloud);
+    assert!(expected.contains(&0));
+    let info = octree.info;
+    for wrong in [
+        Info { centre: info.centre + DVec3::new(0.0, 0.0, 3.0 * info.half_side), ..info },
+        Info { half_side: 0.1, ..info },
+        Info { half_side: f64::INFINITY, ..info },
+        Info { half_side: -info.half_side, ..info },
+        Info { centre: DVec3::NAN, ..info },
+    ] {
+        let mut damaged = file.clone();
+        damaged[ROOT - 40..][..Info::SIZE].copy_from_slice(&wrong.to_bytes());
+        let Loaded { cloud, .. } = read_bytes("a", &damaged, &options).unwrap();
+        assert_eq!(numbers(&cloud), expected, "{wrong:?}");
+    }
 }
 
 #[test]
