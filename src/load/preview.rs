@@ -39,21 +39,25 @@ impl Progress for Silent<'_> {
 impl Listener for Silent<'_> {}
 
 impl Load<'_> {
-    /// Shows the coarsest levels of a file before all of it is read; returns whether it has any and is worth it.
+    /// Shows the coarsest levels of files before all of them are read; returns whether each has some and they are worth it.
     pub(super) fn preview_levels(&self, inputs: &[&OsStr]) -> bool {
-        let [input] = inputs else { return false };
         let is_whole = self.options.points.is_none() && self.options.voxel.is_none();
         // A pipe can be read once.
-        if !(self.listener.wants_preview() && is_whole && Path::new(input).is_file()) {
+        let are_files = inputs.iter().all(|input| Path::new(input).is_file());
+        if !(self.listener.wants_preview() && is_whole && are_files) {
             return false;
         }
-        // Errors are those of the whole file, too, which reports them.
-        let levels = formats::levels(Path::new(input)).unwrap_or_default();
-        if levels.len() < 2 || levels.iter().sum::<u64>() < (WORTH_A_PREVIEW * PREVIEW) as u64 {
+        // Errors are those of the whole files, too, which report them.
+        let levels = |input: &&OsStr| {
+            let levels = formats::levels(Path::new(input)).ok()?;
+            (levels.len() > 1).then(|| levels.iter().sum())
+        };
+        let points: Option<Vec<u64>> = inputs.iter().map(levels).collect();
+        if points.is_none_or(|points| points.iter().sum::<u64>() < (WORTH_A_PREVIEW * PREVIEW) as u64) {
             return false;
         }
         let options = LoadOptions {
-            points: Some(PREVIEW as u64),
+            points: Some(PREVIEW.div_ceil(inputs.len()) as u64),
             estimate: self.quick(),
             attributes: false,
             ..self.options.clone()
@@ -133,11 +137,11 @@ mod tests {
         }
     }
 
-    /// What is heard while a file is loaded.
-    fn heard(path: &Path) -> Vec<String> {
+    /// What is heard while files are loaded.
+    fn heard(paths: &[&Path]) -> Vec<String> {
         let heard = Heard::default();
-        let loaded = load(&[path], &LoadOptions::default(), &heard).unwrap();
-        assert_eq!((loaded.model.surfels.len(), loaded.dropped.total()), (150_000, 0));
+        let loaded = load(paths, &LoadOptions::default(), &heard).unwrap();
+        assert_eq!((loaded.model.surfels.len(), loaded.dropped.total()), (150_000 * paths.len(), 0));
         heard.0.into_inner().unwrap()
     }
 
@@ -150,9 +154,13 @@ mod tests {
         let all = ["a.laz", "a.copc.laz"].map(|name| {
             let path = folder.path().join(name);
             formats::write(&path, &contents, &()).unwrap();
-            heard(&path)
+            path
         });
-        let [plain, octree] = all;
+        let [plain, octree] = &all;
+        let [both, two] = [heard(&[plain, octree]), heard(&[octree, octree])];
+        let [plain, octree] = [heard(&[plain]), heard(&[octree])];
+        assert_eq!(two[..2], ["preview of 20000", "reading"], "{two:?}");
+        assert_eq!(both[0], "reading", "{both:?}");
         assert_eq!(plain[..2], ["reading", "preview of 20000"], "{plain:?}");
         assert_eq!(octree[..2], ["preview of 20000", "reading"], "{octree:?}");
         let previews = octree.iter().filter(|what| what.starts_with("preview"));
