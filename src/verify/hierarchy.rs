@@ -75,21 +75,24 @@ impl Hierarchy {
             }
             match self.nodes[node as usize].content {
                 Content::Item(item) => limit = visit(item, limit),
-                Content::Children(children) => {
-                    let mut entered = children.map(|child| enter(child).map(|t| (child, t)));
-                    if let [Some((_, a)), Some((_, b))] = entered
-                        && a < b
-                    {
-                        entered.swap(0, 1);
+                // The nearer one last, as that is taken first.
+                Content::Children([a, b]) => match (enter(a), enter(b)) {
+                    (Some(to_a), Some(to_b)) if to_a < to_b => {
+                        todo.push((b, to_b));
+                        todo.push((a, to_a));
                     }
-                    todo.extend(entered.into_iter().flatten());
-                }
+                    (to_a, to_b) => {
+                        to_a.into_iter().for_each(|t| todo.push((a, t)));
+                        to_b.into_iter().for_each(|t| todo.push((b, t)));
+                    }
+                },
             }
         }
     }
 }
 
 /// Distance at which a ray enters a box; 0 if it starts inside.
+#[inline]
 fn enter(corners: [DVec3; 2], origin: DVec3, inverse: DVec3) -> Option<f64> {
     let (mut from, mut to) = (0.0f64, f64::INFINITY);
     for axis in 0..3 {
