@@ -34,6 +34,8 @@ pub(super) struct Ellipse {
     pub variance: DVec2,
     /// 1-σ lengths of the major and the minor axis, px.
     pub sigma: DVec2,
+    /// The linear map of offsets, px, to the axes, in σ.
+    pub to_axes: DMat2,
     /// `√(|V| / |V'|)`: height of the filtered kernel relative to the unfiltered one.
     pub amplitude: f64,
     /// Cut-off `F`, in σ.
@@ -98,15 +100,18 @@ impl Ellipse {
             _ => 1.0,
         };
         let angle = if anisotropy <= LEAST_ANISOTROPY { 0.0 } else { 0.5 * (2.0 * xy).atan2(xx - yy) };
+        let axis = DVec2::from_angle(angle);
         let variance = DVec2::new(widened(major), widened(minor));
+        let sigma = DVec2::new(variance.x.sqrt(), variance.y.sqrt());
         let splatting = projector.settings.splatting;
         let on_plane = splatting.footprint.is_on_plane() && projector.depth.perspective;
         let centre = splat.centre;
         Self {
             centre,
-            axis: DVec2::from_angle(angle),
+            axis,
             variance,
-            sigma: DVec2::new(variance.x.sqrt(), variance.y.sqrt()),
+            sigma,
+            to_axes: to_axes(axis, sigma),
             amplitude: splat.sqrt_det / (variance.x * variance.y).sqrt(),
             cutoff: projector.cutoff(),
             horizon: on_plane.then(|| splat.plane / splat.plane.dot(DVec3::new(1.0, centre.x, centre.y))),
@@ -115,7 +120,7 @@ impl Ellipse {
             kernel: splatting.kernel,
             clip: splat.clip,
             corners: splat.weights,
-            square_to_kernel: square_to_kernel(splat, DVec2::from_angle(angle)),
+            square_to_kernel: square_to_kernel(splat, axis),
             clip_reach: projector.clip_reach(),
             turn: splat.turn,
         }
@@ -123,8 +128,10 @@ impl Ellipse {
 
     /// Position in the kernel of the offset `e` from the centre: along its axes, in σ. In perspective the image of a
     /// plane is a homography; one that keeps the centre is affine but for the division by the plane's inverse distance.
+    #[inline]
     pub fn in_kernel(&self, offset: DVec2) -> DVec2 {
-        self.principal(offset) / self.sigma / self.nearness(offset)
+        let along_axes = self.to_axes * offset;
+        if self.horizon.is_some() { along_axes / self.nearness(offset) } else { along_axes }
     }
 
     /// Factor by which perspective shrinks a kernel in the tangent plane at the offset `e` from the centre.
@@ -147,6 +154,7 @@ impl Ellipse {
     }
 
     /// The same of a position in the kernel, in σ.
+    #[inline]
     pub fn rim_in_kernel(&self, y: DVec2) -> f64 {
         if self.square { y.abs().max_element() } else { y.length() }
     }
@@ -183,8 +191,21 @@ impl Ellipse {
 
     /// Factor by which the outline can extend beyond the ellipse.
     fn stretch(&self) -> f64 {
-        let rim = if self.square { std::f64::consts::SQRT_2 } else { 1.0 };
-        if self.horizon.is_some() { MOST_STRETCH * rim } else { rim }
+        if self.horizon.is_some() { MOST_STRETCH * self.corner() } else { self.corner() }
+    }
+
+    /// Distance of the outline's farthest point in the kernel, relative to the cut-off.
+    fn corner(&self) -> f64 {
+        if self.square { std::f64::consts::SQRT_2 } else { 1.0 }
+    }
+
+    /// Upper bound of the factor by which perspective enlarges the outline at `reach` σ. With a factor `s` the offset is at most `s reach` σ long,
+    /// over which the factor grows by `s reach |g|` at most, where g is its gradient per σ: `s ≤ 1 + s reach |g|`.
+    fn enlargement(&self, reach: f64) -> f64 {
+        let Some(plane) = self.horizon else { return 1.0 };
+        let gradient = DVec2::new(plane.y, plane.z);
+        let change = reach * (self.principal(gradient) * self.sigma).length();
+        if change < 1.0 - 1.0 / MOST_STRETCH { 1.0 / (1.0 - change) } else { MOST_STRETCH }
     }
 
     /// Weight at the position `m` in the kernel, σ: kernel times amplitude times normalization weight.
@@ -249,7 +270,8 @@ impl Ellipse {
     /// Range of x within the outline at `reach` σ on the line `y`, px: exact for an ellipse, else an upper bound;
     /// `None` if the line misses it.
     pub fn span(&self, y: f64, reach: f64) -> Option<(f64, f64)> {
-        let reach = self.stretch() * reach;
+        let reach = self.corner() * reach;
+        let reach = reach * self.enlargement(reach);
         let (c, s) = (self.axis.x, self.axis.y);
         let vertical = self.variance.x * s * s + self.variance.y * c * c;
         let covariance = (self.variance.x - self.variance.y) * c * s;
@@ -286,6 +308,11 @@ impl Ellipse {
         }
         to_ellipse(self.cutoff * self.sigma, self.principal(offset).abs())
     }
+}
+
+/// The linear map of offsets, px, to axes of these 1-σ lengths, in σ.
+fn to_axes(axis: DVec2, sigma: DVec2) -> DMat2 {
+    DMat2::from_cols(axis / sigma.x, axis.perp() / sigma.y).transpose()
 }
 
 /// Maps the variance along an axis of a kernel to that of its visibility footprint, px².
@@ -383,13 +410,15 @@ mod tests {
         }
     }
 
-    #[test]
-    fn spans_are_where_the_line_meets_the_ellipse() {
-        let ellipse = Ellipse {
+    /// An ellipse with axes of 3 and 0.5 px.
+    fn ellipse() -> Ellipse {
+        let (axis, sigma) = (DVec2::from_angle(0.7), DVec2::new(3.0, 0.5));
+        Ellipse {
             centre: DVec2::new(10.0, 20.0),
-            axis: DVec2::from_angle(0.7),
-            variance: DVec2::new(9.0, 0.25),
-            sigma: DVec2::new(3.0, 0.5),
+            axis,
+            variance: sigma * sigma,
+            sigma,
+            to_axes: to_axes(axis, sigma),
             amplitude: 1.0,
             cutoff: 2.0,
             horizon: None,
@@ -401,7 +430,12 @@ mod tests {
             square_to_kernel: DMat2::IDENTITY,
             clip_reach: 0.0,
             turn: None,
-        };
+        }
+    }
+
+    #[test]
+    fn spans_are_where_the_line_meets_the_ellipse() {
+        let ellipse = ellipse();
         for y in [17.0, 20.0, 22.5] {
             let (low, high) = ellipse.span(y, 2.0).unwrap();
             for x in [low, high] {
@@ -410,5 +444,45 @@ mod tests {
         }
         let (low, high) = ellipse.bounds();
         assert!(ellipse.span(high.y + 1e-6, 2.0).is_none() && ellipse.span(low.y + 1e-6, 2.0).is_some());
+    }
+
+    #[test]
+    fn spans_hold_outlines_that_perspective_enlarges() {
+        let plain = ellipse();
+        let most = |gradient: DVec2, square: bool| {
+            let plane = DVec3::new(1.0 - gradient.dot(plain.centre), gradient.x, gradient.y);
+            let ellipse = Ellipse { horizon: Some(plane), square, ..plain };
+            let mut inside = 0;
+            let mut farthest = 0f64;
+            for row in -400..400 {
+                let offset = |column: i32| DVec2::new(f64::from(column), f64::from(row)) / 20.0;
+                let is_inside = |column: &i32| ellipse.rim(offset(*column)) <= ellipse.cutoff;
+                for at in (-400..400).filter(is_inside).map(offset) {
+                    let (low, high) = ellipse.span(ellipse.centre.y + at.y, ellipse.cutoff).unwrap();
+                    let x = ellipse.centre.x + at.x;
+                    assert!((low..=high).contains(&x), "{gradient} {square}: {at} outside {low} to {high}");
+                    inside += 1;
+                    farthest = farthest.max(plain.sigmas(at) / ellipse.cutoff);
+                }
+            }
+            assert!(inside > 1000);
+            (farthest, ellipse.corner() * ellipse.enlargement(ellipse.corner() * ellipse.cutoff))
+        };
+        let along = plain.axis;
+        for square in [false, true] {
+            // The bound is reached by a gradient along an axis, and limited.
+            let (farthest, bound) = most(0.05 * along, square);
+            assert!(
+                farthest <= bound && farthest > if square { 0.8 } else { 0.97 } * bound,
+                "{farthest} of {bound}"
+            );
+            for gradient in [0.08 * along, 0.3 * along.perp(), DVec2::new(-0.05, 0.02), DVec2::splat(3.0)] {
+                let (farthest, bound) = most(gradient, square);
+                assert!(
+                    farthest <= bound && bound <= MOST_STRETCH * std::f64::consts::SQRT_2,
+                    "{farthest} of {bound}"
+                );
+            }
+        }
     }
 }
