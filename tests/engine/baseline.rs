@@ -1,5 +1,6 @@
 //! The CPU baseline against the float64 reference, pixel by pixel, and its points against a search. Small mutations fail.
 
+use crate::support::if_whole;
 use crate::support::sampling::{Random, bumpy_sphere, paint_linear, push};
 use crate::support::scenes::{self, Case};
 use crate::support::settings::splats_alone;
@@ -93,11 +94,12 @@ fn a_texture_is_replaced_by_its_colours_at_the_points() {
     assert!(found == draw(&coloured) && found != plain);
 }
 
-/// Compares the picture of every camera with the reference.
+/// Compares pictures with the reference: of every camera in the full matrix, otherwise of one for each case.
 fn all_agree(cases: &[Case]) {
     let mut failed = Vec::new();
-    for case in cases {
-        for (i, camera) in case.cameras.iter().enumerate() {
+    for (number, case) in cases.iter().enumerate() {
+        let some = if_whole(0..3, number % 3..number % 3 + 1);
+        for (i, camera) in case.cameras.iter().enumerate().filter(|(i, _)| some.contains(i)) {
             let picture = draw(Kind::Splats, &case.surfels, camera, case.size, &case.settings);
             let comparison = expected(case, camera).compare(&picture).unwrap();
             print(&format!("{} {i}", case.name), &comparison);
@@ -132,7 +134,7 @@ fn a_wide_picture_keeps_its_digits() {
 
 #[test]
 fn small_mutations_fail() {
-    for case in &cases() {
+    for case in cases().iter().step_by(if_whole(1, 3)) {
         let (camera, settings) = (case.cameras[0], &case.settings);
         let expected = expected(case, &camera);
         let failed = |camera: &Camera, settings: &Settings| {

@@ -64,6 +64,7 @@ fn scans_have_their_meshes_outlines_and_no_holes() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn radii_are_within_half_again_of_the_least_without_holes() {
     let Some(device) = gpu::device(DeviceLimits::default()) else { return };
     let Some(path) = mesh::data("stanford/bunny/bun_zipper.ply") else { return };
