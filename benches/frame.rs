@@ -16,7 +16,7 @@ use surfel::load::load;
 use surfel::settings::{Alpha, Cull, Shading};
 use surfel::verify::scenes;
 use surfel::vk::Device;
-use surfel::{Precision, Rasterizer, Scene, Settings};
+use surfel::{Rasterizer, RenderOptions, Scene, Settings};
 
 const SIZE: [u32; 2] = [1024; 2];
 
@@ -69,7 +69,8 @@ fn measure(table: &Table, device: &Arc<Device>, input: &str) -> Result<()> {
     let name = Path::new(input).file_stem().filter(|_| !scenes::is_scene(input));
     let name = name.map_or_else(|| format!("`{input}`"), |name| name.to_string_lossy().into_owned());
     let row = |(option, rasterizer, settings): (&str, Rasterizer, Settings)| {
-        let engine = DeviceEngine::new(device, scene.clone(), SIZE, rasterizer.into(), Precision::Full)?;
+        let options = RenderOptions { size: SIZE, rasterizer: rasterizer.into(), ..Default::default() };
+        let engine = DeviceEngine::new(device, scene.clone(), options)?;
         let row = Row::new(name.clone() + option, frames(engine, camera, settings));
         Ok(row.of(model.surfels.len(), " points/s"))
     };

@@ -10,7 +10,7 @@ use surfel::bench::format;
 use surfel::geometry::{Camera, Extent, Surfels};
 use surfel::settings::Shading;
 use surfel::verify::scenes::bumpy_sphere;
-use surfel::{Precision, Rasterizer, Scene, Settings};
+use surfel::{Rasterizer, RenderOptions, Scene, Settings};
 
 fn main() -> Result<()> {
     let Some(device) = support::device() else { return Ok(()) };
@@ -20,7 +20,8 @@ fn main() -> Result<()> {
         let camera = Camera::framing(&Extent::from(&scene.bounds()), DVec3::Y, 45f64.to_radians(), 1.0)?;
         let settings = Settings { shading: Shading::Colour, ..Settings::default() };
         let rasterizer = Rasterizer::Compute.into();
-        let engine = DeviceEngine::new(&device, Rc::new(scene), [1024; 2], rasterizer, Precision::Full)?;
+        let options = RenderOptions { size: [1024; 2], rasterizer, ..Default::default() };
+        let engine = DeviceEngine::new(&device, Rc::new(scene), options)?;
         let what = format!("{} points, {order} order", format::count(surfels.len() as u64));
         Ok(Row::new(what, frames(engine, camera, settings)))
     };
