@@ -28,12 +28,14 @@ fn layer(module: &str) -> Option<usize> {
     LAYERS.iter().position(|layer| layer.contains(&module))
 }
 
-/// Every file below a folder.
+/// Every file below a folder, but for what Cargo builds there.
 pub fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).expect("the sources are there") {
         let path = entry.expect("the sources can be listed").path();
         if path.is_dir() {
-            files(&path, found);
+            if !path.ends_with("target") {
+                files(&path, found);
+            }
         } else {
             found.push(path);
         }
