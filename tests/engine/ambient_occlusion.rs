@@ -33,14 +33,17 @@ fn every_kind_of_picture_is_darkened() {
     ];
     for (i, method) in methods.iter().enumerate() {
         for (k, rasterizer) in RASTERIZERS.into_iter().enumerate() {
-            // Every kind once in the everyday test, with either camera.
+            // Every kind once in the everyday test, by either rasterizer and with either camera.
+            if !if_whole(true, i == 0 || k == i % 2) {
+                continue;
+            }
             let some = (i + 3 * k) % 5;
             for &(alpha, background, pixel_filter, shading) in &kinds[if_whole(0..5, some..some + 1)] {
                 let lowpass = method.lowpass + pixel_filter;
                 let ao = [1.0, 3.0][k];
                 let settings =
                     Settings { alpha, background, shading, ao, pixel_filter, lowpass, ..method.settings() };
-                let camera = [perspective(), parallel()][(i + k) % 2];
+                let camera = [perspective(), parallel()][(i / 2 + k) % 2];
                 let found = difference(&renderers, &surfels, &camera, &settings, rasterizer);
                 eprintln!(
                     "{} {rasterizer:?} {alpha:?} {background:?} {pixel_filter} {shading:?}: {found:.1e}",

@@ -29,7 +29,10 @@ fn every_kind_of_picture_is_darkened() {
     let mut worst: f64 = 0.0;
     for (i, method) in methods.iter().enumerate() {
         for (k, rasterizer) in RASTERIZERS.into_iter().enumerate() {
-            // Every kind once in the everyday test, with either camera.
+            // Every kind once in the everyday test, by either rasterizer and with either camera.
+            if !if_whole(true, k == i % 2) {
+                continue;
+            }
             let some = (i + 2 * k) % 4;
             for &(alpha, background, pixel_filter) in &kinds[if_whole(0..4, some..some + 1)] {
                 let lowpass = method.lowpass + pixel_filter;
@@ -42,7 +45,7 @@ fn every_kind_of_picture_is_darkened() {
                     lowpass,
                     ..method.settings()
                 };
-                let camera = [perspective(), parallel()][(i + k) % 2];
+                let camera = [perspective(), parallel()][(i / 2 + k) % 2];
                 let found = difference(&renderers, &surfels, &camera, &settings, rasterizer);
                 eprintln!(
                     "{} {rasterizer:?} {alpha:?} {background:?} {pixel_filter}: {found:.1e}",
