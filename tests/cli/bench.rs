@@ -192,6 +192,7 @@ fn folders_of_results_are_shown_side_by_side() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 #[cfg(unix)]
 fn an_interrupted_measurement_is_continued() {
     let Some(program) = Program::with_device("an_interrupted_measurement_is_continued") else { return };

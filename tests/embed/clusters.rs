@@ -185,6 +185,7 @@ fn culled_clusters_do_not_change_the_picture() {
 
 /// Of several scenes with and without bounds, placed several times.
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn clusters_of_instances_are_culled_one_by_one() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let surfels = surfels();

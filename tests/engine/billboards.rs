@@ -90,6 +90,7 @@ fn solid_part() -> f64 {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn a_ball_of_billboards_has_the_silhouette_of_a_ball_from_every_side() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let renderers = Renderers::new(&device);

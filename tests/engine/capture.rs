@@ -158,6 +158,7 @@ fn corners_make_borders_more_even_and_leave_the_inner_surface_alone() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn captured_weights_are_those_of_the_sums_over_the_neighbours() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let surfels = bumpy_sphere::sample(20_000, 1);

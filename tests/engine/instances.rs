@@ -94,6 +94,7 @@ fn assert_agree(
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn an_identity_placement_renders_the_frame_of_the_scene() {
     let Some(device) = new_device(DeviceLimits::default()) else { return };
     let surfels = rich(3_000);
@@ -263,6 +264,7 @@ fn line_model(primitives: Primitives) -> Model {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn placed_lines_and_triangles_match_one_model() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let surfels = painted(12_000);

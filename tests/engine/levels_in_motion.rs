@@ -52,6 +52,7 @@ fn paths() -> [Vec<DVec3>; 2] {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn pictures_are_as_steady_as_those_of_all_points() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let points = if_whole(2_000_000, 100_000);

@@ -16,6 +16,7 @@ use surfel::vk::DeviceLimits;
 
 /// By bounding ellipses and by the covariance alone, beside the grid's levels.
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn a_cut_of_a_few_square_pixels_is_nearly_as_near_to_the_truth_as_all_points() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let points = if_whole(1_000_000, 100_000);

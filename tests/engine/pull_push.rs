@@ -188,6 +188,7 @@ fn coverage_errors(truth: &Truth, exact: &[f64], picture: &Picture) -> (f64, usi
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn coverage_is_what_the_surface_covers() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let truth = Truth::new(1024);

@@ -184,6 +184,7 @@ fn levels_of_detail_are_drawn_where_those_of_exact_points_are() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn pictures_are_as_near_to_the_truth() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let subject = Subject::scene("scene:bumpy-sphere").unwrap();
