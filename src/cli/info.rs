@@ -12,7 +12,7 @@ use surfel::estimate::{Estimate, Estimated, spacing};
 use surfel::formats::declared::Element;
 use surfel::formats::{self, Dropped, Faces, Inspected, Lines, Loaded, ReadOptions, Report};
 use surfel::geometry::{Cloud, Colours, Model, Parts, View};
-use surfel::load::{scene, scene_cloud};
+use surfel::load::{check_filter, scene, scene_cloud};
 use surfel::{Result, thousands};
 
 /// Number of skipped names that are printed; the header lists all of them.
@@ -20,6 +20,7 @@ const MOST_NAMES: usize = 8;
 
 /// Prints the contents of a file or scene. If its points cannot be rendered, prints what the header declares and fails with the cause.
 pub fn run(args: &Info) -> Result<()> {
+    check_filter(&[args.input.as_ref()], &args.points.filter())?;
     if args.json {
         return value::run(args);
     }

@@ -144,7 +144,7 @@ impl Load<'_> {
     fn all(&self, inputs: &[&OsStr]) -> Result<LoadedModel> {
         self.check_property(inputs)?;
         self.check_points(inputs)?;
-        self.check_filter(inputs)?;
+        check_filter(inputs, &self.options.filter)?;
         let is_previewed = self.preview_levels(inputs);
         let (mut parts, mut read, mut dropped) = (Vec::new(), 0, Dropped::default());
         let (mut skipped, mut faces): (Vec<String>, Vec<u64>) = Default::default();
@@ -246,17 +246,6 @@ impl Load<'_> {
         match (self.options.points, inputs.iter().find_map(|input| scene(input))) {
             (Some(points), Some(scene)) => Err(Error::Usage(format!(
                 "{scene}: a built-in scene has its number of points in its name: add points={points} there"
-            ))),
-            _ => Ok(()),
-        }
-    }
-
-    /// Fails if points of files are left out and all inputs are built-in scenes.
-    fn check_filter(&self, inputs: &[&OsStr]) -> Result<()> {
-        let scenes: Option<Vec<&str>> = inputs.iter().map(|input| scene(input)).collect();
-        match scenes.as_deref() {
-            Some([first, ..]) if !self.options.filter.is_none() => Err(Error::Usage(format!(
-                "{first}: a filter leaves out points of files, and a built-in scene is rendered whole: give a file, or no filter"
             ))),
             _ => Ok(()),
         }
@@ -401,6 +390,20 @@ impl Load<'_> {
              and became {tubes} segments of tubes; of {vertices} vertices {left} are left"
         ));
         Ok(cloud)
+    }
+}
+
+/// Checks that a filter has a file to read.
+///
+/// # Errors
+/// [`Error::Usage`] if it leaves out points and all inputs are built-in scenes.
+pub fn check_filter(inputs: &[&OsStr], filter: &Filter) -> Result<()> {
+    let scenes: Option<Vec<&str>> = inputs.iter().map(|input| scene(input)).collect();
+    match scenes.as_deref() {
+        Some([first, ..]) if !filter.is_none() => Err(Error::Usage(format!(
+            "{first}: a filter leaves out points of files, and a built-in scene is whole: give a file, or no filter"
+        ))),
+        _ => Ok(()),
     }
 }
 

@@ -199,8 +199,10 @@ fn points_in_a_box_can_be_read() {
     assert!(info("--bounds 1,2,3").error(2).contains("XMIN,YMIN,XMAX,YMAX"));
     let none = info("--bounds 0,0,1,1,1,2");
     assert!(none.error(1).contains("choose other bounds"), "{}", none.err);
-    let scene = program.run("render scene:sphere?points=100 -o a.png --reference --bounds 0,0,1,1");
-    assert!(scene.error(2).contains("a built-in scene is rendered whole"), "{}", scene.err);
+    for command in ["render -o a.png --reference", "info", "info --json"] {
+        let scene = program.run(&format!("{command} --bounds 0,0,1,1 scene:sphere?points=100"));
+        assert!(scene.error(2).contains("a built-in scene is whole"), "{}", scene.err);
+    }
 }
 
 #[test]
