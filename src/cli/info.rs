@@ -44,7 +44,7 @@ pub fn run(args: &Info) -> Result<()> {
     let (model, estimated) = model.map_err(|error| error.in_input(path.display().to_string()))?;
     drop(bars);
     let text = describe(&model, report.points) + &sources(&estimated);
-    print(&(text + &dropped(report.dropped, &estimated) + &trailing(&report)))
+    print(&(text + &dropped(report.dropped, &estimated) + &stated(&report) + &trailing(&report)))
 }
 
 /// Describes a built-in scene under these options.
@@ -225,6 +225,13 @@ fn dropped(Dropped { position, transparent, thinned, filtered }: Dropped, estima
         "left out: {position} without a finite position, {transparent} less than a tenth opaque, {unused} that no face uses, {outliers} \
          outliers{thinned}{filtered}\n"
     )
+}
+
+/// Names another number of points that the file states, if it does.
+fn stated(report: &Report) -> String {
+    report.stated.map_or(String::new(), |points| {
+        format!("states: {} points; it may be cut or edited\n", thousands(points))
+    })
 }
 
 /// Describes trailing bytes, if there are any.

@@ -30,6 +30,16 @@ pub struct PointTable<'a> {
     colours: Option<Cow<'a, Colours>>,
 }
 
+/// Other names of fields, in lower case and without the prefix of CloudCompare.
+const ALIASES: [(&str, &str); 6] = [
+    ("time", "gps_time"),
+    ("gpstime", "gps_time"),
+    ("class", "classification"),
+    ("returnnumber", "return_number"),
+    ("numberofreturns", "number_of_returns"),
+    ("pointsourceid", "point_source_id"),
+];
+
 /// An attribute, by name.
 pub struct Column {
     pub name: String,
@@ -37,6 +47,16 @@ pub struct Column {
     pub scalar: Scalar,
     /// Index of the attribute in each input.
     inputs: Vec<Option<usize>>,
+}
+
+impl Column {
+    /// The field of a format with fixed ones that the attribute is, by LAS's names.
+    pub fn field_name(&self) -> String {
+        let name = self.name.to_lowercase();
+        let name = name.strip_prefix("scalar_").unwrap_or(&name);
+        let alias = ALIASES.iter().find(|(other, _)| *other == name);
+        alias.map_or(name, |(_, field)| field).to_owned()
+    }
 }
 
 /// Indices of three attributes in each input.

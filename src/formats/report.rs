@@ -30,6 +30,8 @@ pub struct Report {
     pub skipped_elements: Vec<String>,
     /// Number of vertices in the file, including dropped ones.
     pub points: u64,
+    /// Number of points that the file states, if it holds another: it may be cut, or edited.
+    pub stated: Option<u64>,
     /// Dropped vertices.
     pub dropped: Dropped,
     /// Numbers of points by class and return, if [`ReadOptions::counts`](super::ReadOptions::counts) wants them.
@@ -83,6 +85,7 @@ impl Report {
             lines: Lines::default(),
             gaussians,
             texture_missing: None,
+            stated: None,
             trailing: 0,
         }
     }

@@ -13,6 +13,10 @@ pub fn log(name: &str, report: &Report) {
             log::warn!("{name}: {count} of {points} points {why} and are left out");
         }
     }
+    if let Some(stated) = report.stated {
+        let [stated, points] = [stated, report.points].map(thousands);
+        log::warn!("{name}: states {stated} points and has {points}: it may be cut or edited");
+    }
     if report.clip_lines_dropped > 0 {
         log::warn!(
             "{name}: {} clip lines are not finite or in no tangent plane and are left out",

@@ -29,6 +29,17 @@ fn a_file_is_described() {
 }
 
 #[test]
+fn another_number_of_points_than_the_file_states_is_a_warning() {
+    let program = Program::new();
+    program.write("a.pts", "1500\n0 0 0 7\n1 0 0 7\n0 1 0 7\n");
+    let run = program.run("info a.pts");
+    assert!(run.text().contains("\nstates: 1,500 points; it may be cut or edited\n"), "{}", run.text());
+    let run = program.run("render a.pts -o a.png --reference --size 8x8");
+    run.text();
+    assert!(run.err.contains("warning: a.pts: states 1,500 points and has 3"), "{}", run.err);
+}
+
+#[test]
 fn the_header_of_an_unusable_file_is_printed() {
     let program = Program::new();
     program.write("a.ply", surfels(&["0 0 0 0 0 1 1"]).replace("radius", "confidence"));

@@ -82,6 +82,7 @@ fn read(all: &mut Object, report: &Report, cloud: &Cloud) {
         "faces": { "understood": report.faces.understood, "skipped": report.faces.skipped },
         "lines": { "understood": report.lines.understood, "skipped": report.lines.skipped, "sides_of_faces": report.lines.sides },
         "left_out": { "without_position": position, "transparent": transparent, "thinned": thinned, "filtered": filtered },
+        "stated_points": report.stated,
         "trailing_bytes": report.trailing,
         "details": report.details.iter().cloned().collect::<std::collections::BTreeMap<_, _>>(),
     }) else {

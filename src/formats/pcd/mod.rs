@@ -117,7 +117,7 @@ fn read_records(source: &Source, header: &Header, layout: &Layout, meter: &Meter
 }
 
 fn read_text(source: &Source, header: &Header, layout: &Layout, meter: &Meter) -> Parsed<(Arrays, Tally)> {
-    let pieces = lines::pieces(source, header.payload, header.line, meter)?;
+    let (pieces, _) = lines::pieces(source, header.payload, header.line, meter)?;
     let count: u64 = pieces.iter().map(|piece| piece.rows as u64).sum();
     if count != header.count {
         return Err(format!(

@@ -169,6 +169,7 @@ fn report(header: Header, vertex: usize, layout: &Layout, contents: &Contents) -
         materials_dropped: contents.materials.dropped(),
         faces: contents.faces,
         lines: contents.lines,
+        stated: None,
         trailing: contents.trailing,
         elements: header.elements.clone(),
         ..Report::of_points(header.encoding, &header.elements[vertex], layout, &contents.points)

@@ -57,10 +57,28 @@ pub fn is_row(line: &[u8]) -> bool {
     comment(line).is_none() && cells(line).nth(1).is_some()
 }
 
-/// Divides the lines from byte `start` on, where line `number` begins, into pieces, and counts their points.
-pub fn pieces(source: &Source, start: u64, number: u64, meter: &Meter) -> Parsed<Vec<Piece>> {
-    let count = |bytes: &[u8]| (of(bytes).filter(|line| is_row(line)).count(), ());
-    Ok(survey(source, start, number, count, meter)?.into_iter().map(|(piece, ())| piece).collect())
+/// The number of points that a line states: PTS files have it before each scan.
+fn stated(line: &[u8]) -> Option<u64> {
+    std::str::from_utf8(line.trim_ascii()).ok()?.parse().ok()
+}
+
+/// Divides the lines from byte `start` on, where line `number` begins, into pieces, and counts their points; with them the sum of the numbers
+/// that lines state, if any does.
+pub fn pieces(source: &Source, start: u64, number: u64, meter: &Meter) -> Parsed<(Vec<Piece>, Option<u64>)> {
+    let count = |bytes: &[u8]| {
+        let (mut rows, mut sum) = (0, None);
+        for line in of(bytes) {
+            if is_row(line) {
+                rows += 1;
+            } else if let Some(points) = stated(line) {
+                sum = Some(points.saturating_add(sum.unwrap_or(0)));
+            }
+        }
+        (rows, sum)
+    };
+    let (pieces, sums): (Vec<Piece>, Vec<Option<u64>>) =
+        survey(source, start, number, count, meter)?.into_iter().unzip();
+    Ok((pieces, sums.into_iter().flatten().reduce(u64::saturating_add)))
 }
 
 /// Divides the lines from byte `start` on, where line `number` begins, into pieces: `look` gets the bytes of each, and returns the number of

@@ -53,7 +53,7 @@ impl Reader for Text {
             Head::of(&beginning, options.columns.as_deref(), input.name.to_lowercase().ends_with(".xyzrgb"))?;
         // The lines are counted, and then read.
         let meter = Meter::new(progress, 2 * source.size());
-        let pieces = lines::pieces(source, start, line, &meter)?;
+        let (pieces, stated) = lines::pieces(source, start, line, &meter)?;
         let property =
             |column: &Column| Property { name: column.name.clone(), kind: Kind::Scalar(column.scalar) };
         let element = Element {
@@ -61,7 +61,10 @@ impl Reader for Text {
             count: pieces.iter().map(|piece| piece.rows as u64).sum(),
             properties: columns.iter().map(property).collect(),
         };
-        let loaded = load(source, &element, &columns, &pieces, options, &meter);
+        let loaded = load(source, &element, &columns, &pieces, options, &meter).map(|mut loaded| {
+            loaded.report.stated = stated.filter(|points| *points != element.count);
+            loaded
+        });
         Ok(Inspected { format: self.name(), encoding: Encoding::Ascii, elements: vec![element], loaded })
     }
 }

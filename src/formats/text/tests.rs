@@ -105,6 +105,23 @@ fn long_files_are_read_in_pieces_with_comments_and_any_line_ends() {
 }
 
 #[test]
+fn another_number_of_points_than_the_file_states_is_reported() {
+    let row = "1 2 3\n";
+    let scans = |first: usize, second: usize| format!("2\n{}3\n{}", row.repeat(first), row.repeat(second));
+    for (text, expected) in [
+        (scans(2, 3), None),
+        (scans(2, 2), Some(5)),
+        (scans(2, 4), Some(5)),
+        (row.repeat(4), None),
+        // Over several pieces of a file.
+        (scans(1 << 17, 1 << 17), Some(5)),
+        (format!("{}\n{}", 1 << 18, row.repeat(1 << 18)), None),
+    ] {
+        assert_eq!(parsed(&text).unwrap().report.stated, expected);
+    }
+}
+
+#[test]
 fn damage_is_named() {
     let has = |text: &str, what: &str| {
         let cause = parsed(text).unwrap_err().to_string();

@@ -44,9 +44,15 @@ struct Found<'a> {
 }
 
 impl<'a> Fields<'a> {
-    /// Names of attributes that have fields.
-    pub const NAMES: [&'static str; 7] =
-        ["intensity", "row", "column", "return_number", "number_of_returns", "time", "gps_time"];
+    /// Attributes that have fields, by [`Column::field_name`].
+    const NAMES: [&'static str; 6] =
+        ["intensity", "row", "column", "return_number", "number_of_returns", "gps_time"];
+
+    /// The attribute that a field has: the first of its name.
+    pub fn column<'t>(table: &'t PointTable, field: &str) -> Option<&'t Column> {
+        let has_name = |column: &&Column| Self::NAMES.contains(&field) && column.field_name() == field;
+        table.columns.iter().find(has_name)
+    }
 
     /// The fields of some rows, with 8-bit or 16-bit colours; says in `written` what is left out.
     pub fn of(
@@ -92,10 +98,7 @@ impl<'a> Fields<'a> {
     }
 
     fn add_attributes(&mut self, table: &'a PointTable, rows: Range<usize>, written: &mut Written) {
-        let find = |name: &str| {
-            let column = table.columns.iter().find(|column| column.name == name)?;
-            Found::of(table, column, rows.clone())
-        };
+        let find = |name: &str| Found::of(table, Self::column(table, name)?, rows.clone());
         if let Some(found) = find("intensity") {
             self.add(&found, RecordName::Intensity, found.kind(), 0);
             self.add_flag(&found, RecordName::IsIntensityInvalid);
@@ -110,11 +113,11 @@ impl<'a> Fields<'a> {
                 self.add_whole(Some(count), RecordName::ReturnCount, 0, 0, written);
                 self.add_whole(Some(number), RecordName::ReturnIndex, 1, -1, written);
             } else {
-                let names = vec!["return_number".into(), "number_of_returns".into()];
+                let names = vec![number.column.name.clone(), count.column.name.clone()];
                 written.leave_out(names, "some returns have the number 0, and E57 counts from the first");
             }
         }
-        let Some(time) = find("time").or_else(|| find("gps_time")) else { return };
+        let Some(time) = find("gps_time") else { return };
         if time.min >= 0.0 {
             self.add(&time, RecordName::TimeStamp, RecordDataType::Double { min: None, max: None }, 0);
             self.add_flag(&time, RecordName::IsTimeStampInvalid);

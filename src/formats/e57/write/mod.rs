@@ -13,7 +13,7 @@ use crate::error::Result;
 use crate::formats::atomic;
 use crate::formats::disc;
 use crate::formats::meter::Meter;
-use crate::formats::point_table::PointTable;
+use crate::formats::point_table::{Column, PointTable};
 use crate::formats::quoted::on_one_line;
 use crate::formats::reader::Reader;
 use crate::formats::writer::{Contents, Writer, Written, point_table};
@@ -62,8 +62,11 @@ impl Writer for E57 {
 
 /// Says which attributes and properties of discs have no field.
 fn leave_out(table: &PointTable, written: &mut Written) {
-    let has_field = |name: &str| name == SCAN || Fields::NAMES.contains(&name);
-    let columns = table.columns.iter().map(|column| column.name.clone()).filter(|name| !has_field(name));
+    let has_field = |column: &&Column| {
+        let first = Fields::column(table, &column.field_name());
+        column.name == SCAN || first.is_some_and(|first| first.name == column.name)
+    };
+    let columns = table.columns.iter().filter(|column| !has_field(column)).map(|column| column.name.clone());
     let discs =
         disc::present(table.surfels(), table.contents.discs).filter(|property| *property >= disc::RADIUS);
     let discs = discs.map(|property| disc::NAMES[property].to_owned());

@@ -91,17 +91,19 @@ fn attributes_of_other_formats_get_their_fields() {
 #[test]
 fn missing_numbers_are_flagged_and_limits_stated() {
     let folder = tempfile::tempdir().unwrap();
-    let names: String =
-        ["x", "y", "z", "intensity", "time"].map(|name| format!("property float {name}\n")).concat();
+    let names: String = ["x", "y", "z", "scalar_Intensity", "time", "Intensity"]
+        .map(|name| format!("property float {name}\n"))
+        .concat();
     let text = format!(
-        "ply\nformat ascii 1.0\nelement vertex 3\n{names}end_header\n0 0 0 0.5 1\n1 2 3 nan nan\n1 2 4 2.25 3\n"
+        "ply\nformat ascii 1.0\nelement vertex 3\n{names}end_header\n0 0 0 0.5 1 7\n1 2 3 nan nan 7\n1 2 4 2.25 3 7\n"
     );
     let (mut all_surfels, before, _) = reversed(read_bytes("a.ply", text.as_bytes(), &all()).unwrap());
     all_surfels.ellipses = Some(vec![Ellipse::circle(Vec3::Z); 3]);
     let (path, notes) = written(&folder, &all_surfels, &[before]);
     assert_eq!(
         notes.left_out,
-        ["radius ux uy uz vx vy vz: E57 has no such fields; LAS and LAZ files keep them"]
+        ["Intensity radius ux uy uz vx vy vz: E57 has no such fields; LAS and LAZ files keep them"],
+        "the first intensity has the field"
     );
     let bytes = std::fs::read(&path).unwrap();
     let text = String::from_utf8_lossy(&bytes);

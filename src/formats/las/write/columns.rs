@@ -5,26 +5,8 @@ use crate::formats::las::fields::Field;
 use crate::formats::point_table::{Column, PointTable};
 use rayon::prelude::*;
 
-/// Other names of fields, in lower case and without the prefix of CloudCompare.
-const ALIASES: [(&str, &str); 6] = [
-    ("time", "gps_time"),
-    ("gpstime", "gps_time"),
-    ("class", "classification"),
-    ("returnnumber", "return_number"),
-    ("numberofreturns", "number_of_returns"),
-    ("pointsourceid", "point_source_id"),
-];
-
 /// Name of the intensity.
 const INTENSITY: &str = "intensity";
-
-/// The field that an attribute would be.
-pub fn field_name(column: &Column) -> String {
-    let name = column.name.to_lowercase();
-    let name = name.strip_prefix("scalar_").unwrap_or(&name);
-    let alias = ALIASES.iter().find(|(other, _)| *other == name);
-    alias.map_or(name, |(_, field)| field).to_owned()
-}
 
 /// Smallest and largest number of a column, and whether all are whole.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! Point format, header and fields of a written file.
 
-use super::columns::{Range, field_name, intensity_scale};
+use super::columns::{Range, intensity_scale};
 use super::octree::Cube;
 use super::scale::{Scale, Stored, bounds};
 use super::{copc, records};
@@ -93,7 +93,7 @@ impl<'a> Plan<'a> {
             "wave packets are not written",
         );
         let mapped = columns.into_iter().map(|column| {
-            let name = field_name(column);
+            let name = column.field_name();
             let range = Range::of(table, column);
             Mapped { column, name, range }
         });
