@@ -6,6 +6,7 @@
 //! figures epsilon OUT.png                              which discs are blended
 //! figures pyramid OUT.png                              levels of a frame by pull–push
 //! figures bare IN.ply OUT.xyz                          positions and colours of points alone, as text
+//! figures lidar OUT.xyz                                what a lidar at 0, 0, 0 sees of balls and walls on a ground, as text
 //! ```
 
 use glam::{DVec2, DVec3, Vec3, dvec2, dvec3};
@@ -366,6 +367,43 @@ fn bare(file: &str) -> Result<String> {
     Ok(text)
 }
 
+/// Distances from 0 along a beam to where it meets a ground, balls and upright walls of one x.
+fn ranges(beam: DVec3) -> impl Iterator<Item = f64> {
+    let ground = -1.7 / beam.z;
+    let balls = [(dvec3(5.0, -3.0, -0.9), 0.8), (dvec3(9.0, 3.5, -0.5), 1.2), (dvec3(-4.0, 5.0, -0.7), 1.0)];
+    let balls = balls.into_iter().filter_map(move |(centre, radius): (DVec3, f64)| {
+        let middle = centre.dot(beam);
+        let inside = radius * radius - (centre - middle * beam).length_squared();
+        (inside >= 0.0).then(|| middle - inside.sqrt())
+    });
+    let walls = [(14.0, [-8.0, 2.0]), (-9.0, [-3.0, 9.0])];
+    let walls = walls.into_iter().filter_map(move |(x, [from, to])| {
+        let range = x / beam.x;
+        let at = range * beam;
+        ((from..to).contains(&at.y) && at.z < 1.0).then_some(range)
+    });
+    balls.chain(walls).chain([ground]).filter(|range| (0.5..40.0).contains(range))
+}
+
+/// The points that a lidar at 0 sees, with errors of up to 5 mm, as text.
+fn lidar() -> Result<String> {
+    let step = 0.35f64.to_radians();
+    let mut text = String::from("x y z\n");
+    for row in -110..40 {
+        for column in 0..1028 {
+            let (sin, cos) = (step * f64::from(column)).sin_cos();
+            let (up, along) = (step * f64::from(row)).sin_cos();
+            let beam = dvec3(along * cos, along * sin, up);
+            let error = 0.01 * ((f64::from(1028 * row + column) * 0.754_877).rem_euclid(1.0) - 0.5);
+            if let Some(range) = ranges(beam).reduce(f64::min) {
+                let DVec3 { x, y, z } = (range + error) * beam;
+                writeln!(text, "{x:.4} {y:.4} {z:.4}")?;
+            }
+        }
+    }
+    Ok(text)
+}
+
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
@@ -378,6 +416,8 @@ fn main() -> Result<()> {
         ["epsilon", out] => epsilon().write(out),
         ["pyramid", out] => pyramid()?.write(out),
         ["bare", file, out] => Ok(std::fs::write(out, bare(file)?)?),
-        _ => Err("give row, kernels, epsilon, pyramid or bare: see the beginning of tools/figures.rs".into()),
+        ["lidar", out] => Ok(std::fs::write(out, lidar()?)?),
+        _ => Err("give row, kernels, epsilon, pyramid, bare or lidar: see the beginning of tools/figures.rs"
+            .into()),
     }
 }

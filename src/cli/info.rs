@@ -210,7 +210,10 @@ fn sources(estimated: &Estimated) -> String {
         (estimated.line_radii_from_extent, "from the lines' extent"),
     ]);
     let lines = if lines.is_empty() { lines } else { format!("radii of lines: {lines}\n") };
-    format!("normals: {normals}\nradii: {radii}\n{lines}")
+    let scanner =
+        list(&[(estimated.scanner_found, "points have theirs at 0,0,0, as their directions are a grid")]);
+    let scanner = if scanner.is_empty() { scanner } else { format!("scanner: {scanner}\n") };
+    format!("{scanner}normals: {normals}\nradii: {radii}\n{lines}")
 }
 
 /// Describes the points that are left out.

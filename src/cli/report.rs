@@ -201,6 +201,7 @@ pub fn estimated(counts: &Estimated) -> Value {
         two_sided,
         scattered,
         billboards,
+        scanner_found,
         ..
     } = counts;
     let Estimated { radii_given, radii_from_faces, radii_from_neighbours, .. } = counts;
@@ -209,6 +210,7 @@ pub fn estimated(counts: &Estimated) -> Value {
             "given": normals_given, "from_faces": normals_from_faces, "from_neighbours": normals_from_neighbours,
             "two_sided": two_sided, "scattered": scattered, "billboards": billboards,
         },
+        "scanner_found": scanner_found,
         "radii": {
             "given": radii_given, "from_faces": radii_from_faces, "from_neighbours": radii_from_neighbours,
         },

@@ -4,6 +4,7 @@ use clap::ValueEnum;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
 use std::str::FromStr;
+use surfel::estimate::Scanner;
 use surfel::geometry::ValueRange;
 use surfel::geometry::srgb;
 use surfel::settings::methods::Method;
@@ -43,6 +44,15 @@ pub fn bounds(text: &str) -> Result<[DVec3; 2], String> {
          --bounds=-10,0,10,20"
             .into()
     })
+}
+
+/// Parses `auto`, `file` or the position of a scanner.
+pub fn scanner(text: &str) -> Result<Scanner, String> {
+    match text {
+        "auto" => Ok(Scanner::Auto),
+        "file" => Ok(Scanner::OfFile),
+        _ => vector(text).map(Scanner::At).map_err(|_| "give auto, file or X,Y,Z".into()),
+    }
 }
 
 /// Parses a vector that is not 0; returns the unit vector.

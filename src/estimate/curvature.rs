@@ -1,5 +1,6 @@
 //! Curvatures from the nearest points: how far a surface bends away from the tangent plane.
 
+use super::scans::Scans;
 use super::sites::Sites;
 use crate::Progress;
 use crate::error::Result;
@@ -22,16 +23,21 @@ const PIECE: usize = 1 << 12;
 pub(super) fn curvatures(
     surfels: &Surfels,
     sites: &Sites,
+    scans: &Scans,
     progress: &dyn Progress,
 ) -> Result<Vec<Curvature>> {
     let mut curvatures = vec![Curvature::default(); surfels.len()];
     let (done, total) = (AtomicU64::new(0), surfels.len() as u64);
     curvatures.par_chunks_mut(PIECE).enumerate().try_for_each(|(piece, curvatures)| {
         let first = piece * PIECE;
-        curvatures
-            .iter_mut()
-            .zip(first..)
-            .for_each(|(curvature, i)| *curvature = curvature_at(surfels, sites, i));
+        let mut near = Vec::new();
+        for (curvature, i) in curvatures.iter_mut().zip(first..) {
+            let site = sites.of_point[i];
+            near.clear();
+            near.extend(sites.nearest(site, NEIGHBOURS));
+            scans.nearest(site, NEIGHBOURS, &mut near);
+            *curvature = curvature_at(surfels, sites, &near, i);
+        }
         let piece = curvatures.len() as u64;
         progress.at("estimating curvatures", done.fetch_add(piece, Ordering::Relaxed) + piece, total);
         progress.check_cancelled()
@@ -39,7 +45,7 @@ pub(super) fn curvatures(
     Ok(curvatures)
 }
 
-fn curvature_at(surfels: &Surfels, sites: &Sites, i: usize) -> Curvature {
+fn curvature_at(surfels: &Surfels, sites: &Sites, near: &[u32], i: usize) -> Curvature {
     let normal = surfels.normals[i].as_dvec3();
     let is_two_sided = |i: usize| surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[i]);
     if is_two_sided(i) || surfels.is_billboard(i) {
@@ -50,7 +56,7 @@ fn curvature_at(surfels: &Surfels, sites: &Sites, i: usize) -> Curvature {
     let clip = surfels.clips.as_ref().and_then(|clips| clips.get(i));
     // Beyond a clip line is another surface.
     let is_kept = |offset: DVec3| clip.is_none_or(|clip| clip.keeps(f64::from(sites.unit) * offset));
-    let circles = sites.nearest(site, NEIGHBOURS).filter_map(|other| {
+    let circles = near.iter().filter_map(|&other| {
         let point = sites.point[other as usize] as usize;
         let is_same_side = !is_two_sided(point) && surfels.normals[point].as_dvec3().dot(normal) > SAME_SIDE;
         let offset = (sites.at(other) - sites.at(site)).as_dvec3();
@@ -88,7 +94,7 @@ mod tests {
             ..Surfels::default()
         };
         let sites = Sites::new(&surfels.positions, &()).unwrap();
-        curvatures(&surfels, &sites, &()).unwrap()
+        curvatures(&surfels, &sites, &Scans::none(&sites), &()).unwrap()
     }
 
     fn middle(values: impl Iterator<Item = f64>) -> f64 {

@@ -1,6 +1,6 @@
 //! Surfels with missing attributes.
 
-use super::{Estimate, Estimated};
+use super::{Estimate, Estimated, Scanner};
 use crate::error::{Error, Result};
 use crate::geometry::{Clips, Cloud, Ellipse, FaceTextures, Surfels, View, Viewpoints, Weights, morton};
 use glam::Vec3;
@@ -63,12 +63,16 @@ impl Draft {
                 return Err(Error::Usage(text.into()));
             }
         }
+        let (view, viewpoints) = match how.scanner {
+            Scanner::At(position) => (View::From((position - surfels.origin).as_vec3()), None),
+            Scanner::Auto | Scanner::OfFile => (cloud.view, cloud.viewpoints),
+        };
         Ok(Self {
             surfels,
             triangles: cloud.triangles,
             face_textures: cloud.face_textures,
-            view: cloud.view,
-            viewpoints: cloud.viewpoints.filter(|viewpoints| viewpoints.scans.len() == count),
+            view,
+            viewpoints: viewpoints.filter(|viewpoints| viewpoints.scans.len() == count),
             estimated: Estimated::default(),
         })
     }
@@ -76,6 +80,21 @@ impl Draft {
     /// Where a surfel was seen from.
     pub fn view(&self, surfel: usize) -> View {
         self.viewpoints.as_ref().map_or(self.view, |viewpoints| viewpoints.view(surfel))
+    }
+
+    /// The views of all scans.
+    pub fn views(&self) -> &[View] {
+        self.viewpoints.as_ref().map_or(std::slice::from_ref(&self.view), |viewpoints| &viewpoints.views)
+    }
+
+    /// The scan of a surfel: an index of [`Draft::views`].
+    pub fn scan(&self, surfel: usize) -> usize {
+        self.viewpoints.as_ref().map_or(0, |viewpoints| usize::from(viewpoints.scans[surfel]))
+    }
+
+    /// Sets where all points were seen from.
+    pub fn set_view(&mut self, view: View) {
+        self.view = view;
     }
 
     /// Replaces the surfels by others, which have normals and radii.

@@ -20,6 +20,7 @@ mod orient;
 mod outliers;
 mod patch;
 mod reach;
+mod scans;
 mod scatter;
 mod sheet;
 mod sites;
@@ -33,6 +34,8 @@ use crate::Progress;
 use crate::error::{Error, Result};
 use crate::geometry::{Cloud, Surfels};
 use draft::Draft;
+use glam::DVec3;
+use scans::Scans;
 use sites::Sites;
 use std::f32::consts::PI;
 use std::ops::Add;
@@ -65,6 +68,18 @@ pub enum MeshSampling {
     Triangles,
 }
 
+/// Where the scanner was that saw the points.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Scanner {
+    /// Where the file says; otherwise at 0, 0, 0, if the directions of the points from there are a grid, as of lidars.
+    #[default]
+    Auto,
+    /// Where the file says, or unknown.
+    OfFile,
+    /// At a position, in the coordinates of the file.
+    At(DVec3),
+}
+
 /// Options of an estimation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
@@ -81,6 +96,9 @@ pub struct Estimate {
     /// Whether points on no surface, as in vegetation, become billboards ([`Surfels::is_billboard`]) instead of discs with a normal that means
     /// nothing. Their discs are small, so that leaves stay separate.
     pub billboards: bool,
+    /// Where the scanner was. Normals face it, and the points next to each other as it sees them tell radii and normals where the lines of a
+    /// scan are far apart.
+    pub scanner: Scanner,
     /// Where the surfels of meshes are.
     pub mesh_sampling: MeshSampling,
     /// Removes points whose mean distance from their neighbours is more than this number of standard deviations above the average.
@@ -103,6 +121,7 @@ impl Default for Estimate {
             elliptical: false,
             outlines: true,
             billboards: true,
+            scanner: Scanner::Auto,
             mesh_sampling: MeshSampling::Auto,
             outliers: None,
             sharp: None,
@@ -138,6 +157,11 @@ impl Estimate {
                 "the angle of a sharp edge is {angle} radians: give one between 0 and a half turn"
             )));
         }
+        if let Scanner::At(position) = self.scanner
+            && !position.is_finite()
+        {
+            return Err(Error::Usage(format!("the scanner is at {position}: give finite coordinates")));
+        }
         positive("the factor of the radii", self.radius_scale)
     }
 }
@@ -169,6 +193,8 @@ pub struct Estimated {
     pub unused: u64,
     /// Triangles turned round: their neighbours are wound the other way, or their closed surface is wound inwards.
     pub triangles_turned: u64,
+    /// Points whose scanner was found at 0, 0, 0 ([`Scanner::Auto`]).
+    pub scanner_found: u64,
     /// Vertices of meshes that ellipses on their triangles replace ([`MeshSampling`]).
     pub vertices_replaced: u64,
     /// Points removed as outliers.
@@ -201,6 +227,7 @@ impl Add for Estimated {
             radii_from_neighbours: self.radii_from_neighbours + other.radii_from_neighbours,
             unused: self.unused + other.unused,
             triangles_turned: self.triangles_turned + other.triangles_turned,
+            scanner_found: self.scanner_found + other.scanner_found,
             vertices_replaced: self.vertices_replaced + other.vertices_replaced,
             outliers: self.outliers + other.outliers,
             clipped: self.clipped + other.clipped,
@@ -247,14 +274,16 @@ impl Cloud {
         let sites = (lacks_anything || how.outlines)
             .then(|| Sites::new(&draft.surfels.positions, progress))
             .transpose()?;
-        if let Some(sites) = sites.as_ref().filter(|_| lacks_anything) {
-            neighbours::fill(&mut draft, sites, how, progress)?;
+        let scans = sites.as_ref().map(|sites| Scans::new(&mut draft, sites, how.scanner));
+        let near = sites.as_ref().zip(scans.as_ref());
+        if let Some((sites, scans)) = near.filter(|_| lacks_anything) {
+            neighbours::fill(&mut draft, sites, scans, how, progress)?;
         }
         let triangles = std::mem::take(&mut draft.triangles);
         let (mut surfels, mut estimated) = draft.finish(how)?;
-        if let Some(sites) = sites.filter(|_| how.outlines) {
-            surfels.curvatures = Some(curvature::curvatures(&surfels, &sites, progress)?);
-            estimated.bounded = boundary::clip(&mut surfels, &triangles, &sites);
+        if let Some((sites, scans)) = near.filter(|_| how.outlines) {
+            surfels.curvatures = Some(curvature::curvatures(&surfels, sites, scans, progress)?);
+            estimated.bounded = boundary::clip(&mut surfels, &triangles, sites);
         }
         if let Some(angle) = how.sharp {
             estimated.clipped = creases::clip(&mut surfels, angle, how, progress)?;
@@ -290,6 +319,7 @@ mod tests {
             radii_from_neighbours: 7,
             triangles_turned: 16,
             vertices_replaced: 15,
+            scanner_found: 19,
             outliers: 8,
             clipped: 9,
             unused: 14,
@@ -310,6 +340,7 @@ mod tests {
             radii_from_neighbours: 14,
             triangles_turned: 32,
             vertices_replaced: 30,
+            scanner_found: 38,
             outliers: 16,
             clipped: 18,
             unused: 28,

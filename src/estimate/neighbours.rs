@@ -3,6 +3,7 @@
 use super::draft::{Draft, lacks_normal};
 use super::orient::{Edge, Oriented};
 use super::patch::{Patch, Surveyor};
+use super::scans::Scans;
 use super::scatter::{self, Scatter};
 use super::sites::Sites;
 use super::{Estimate, MARGIN};
@@ -29,9 +30,15 @@ const LARGEST_PART: f32 = 0.002;
 const PIECE: usize = 1 << 12;
 
 /// Estimates missing normals and radii from the nearest points; `sites` are those of the surfels. Surfels are best in Morton order.
-pub(super) fn fill(draft: &mut Draft, sites: &Sites, how: &Estimate, progress: &dyn Progress) -> Result<()> {
+pub(super) fn fill(
+    draft: &mut Draft,
+    sites: &Sites,
+    scans: &Scans,
+    how: &Estimate,
+    progress: &dyn Progress,
+) -> Result<()> {
     let surfels = &draft.surfels;
-    let survey = Survey::new(sites, wanted(surfels, sites), how, progress)?;
+    let survey = Survey::new(sites, scans, wanted(surfels, sites), how, progress)?;
     let (normals, unknown) = normals(draft, sites, &survey, progress);
     progress.check_cancelled()?;
     let Scatter { scattered, mut volume } = Scatter::new(&survey, &normals);
@@ -41,7 +48,7 @@ pub(super) fn fill(draft: &mut Draft, sites: &Sites, how: &Estimate, progress: &
     let radii = radii(surfels, sites, &survey, &volume);
     let is_estimated: Vec<bool> = surfels.radii.iter().map(|radius| *radius == 0.0).collect();
     put(draft, sites, &OfSites { normals, unknown, radii, scattered, volume });
-    if how.elliptical {
+    if how.elliptical || survey.has_ellipses() {
         stretch(&mut draft.surfels, sites, &survey, &is_estimated);
     }
     Ok(())
@@ -110,13 +117,19 @@ pub(super) struct Survey {
 }
 
 impl Survey {
-    fn new(sites: &Sites, wanted: Vec<u32>, how: &Estimate, progress: &dyn Progress) -> Result<Self> {
+    fn new(
+        sites: &Sites,
+        scans: &Scans,
+        wanted: Vec<u32>,
+        how: &Estimate,
+        progress: &dyn Progress,
+    ) -> Result<Self> {
         let mut patches = vec![Patch::default(); wanted.len()];
         let mut edges = vec![0; wanted.len() * EDGES];
         let (done, total) = (AtomicU64::new(0), wanted.len() as u64);
         let pieces = patches.par_chunks_mut(PIECE).zip(edges.par_chunks_mut(PIECE * EDGES));
         pieces.zip(wanted.par_chunks(PIECE)).try_for_each(|((patches, edges), wanted)| {
-            let mut surveyor = Surveyor::new(sites, how.neighbours, how.elliptical);
+            let mut surveyor = Surveyor::new(sites, scans, how.neighbours, how.elliptical);
             for ((patch, edges), &site) in patches.iter_mut().zip(edges.chunks_mut(EDGES)).zip(wanted) {
                 *patch = surveyor.survey(site, edges);
             }
@@ -129,6 +142,11 @@ impl Survey {
             progress.check_cancelled()
         })?;
         Ok(Self { sites: wanted, patches, edges })
+    }
+
+    /// Whether some discs are ellipses.
+    fn has_ellipses(&self) -> bool {
+        self.patches.iter().any(|patch| patch.ellipse.is_some())
     }
 
     /// Pairs of neighbouring sites, each once, unless both are `known`.
@@ -216,10 +234,14 @@ fn radii(surfels: &Surfels, sites: &Sites, survey: &Survey, volume: &[bool]) -> 
         around.iter_mut().zip(near).for_each(|(reach, &other)| *reach = reaches[other as usize]);
         let (_, beside, _) = around.select_nth_unstable_by(EDGES / 2, f32::total_cmp);
         radii[site as usize] = MARGIN as f32
-            * reaches[site as usize]
-                .min(LARGEST_BESIDE * *beside)
-                .min(most * (1.0 + patch.flatness))
-                .min(if patch.is_surface { sparse } else { LARGEST_SPARSE[0] * middle });
+            * reaches[site as usize].min(LARGEST_BESIDE * *beside).min(most * (1.0 + patch.flatness)).min(
+                match (patch.is_surface, patch.of_scan) {
+                    // The scanner's grid tells how far the surface goes on.
+                    (true, true) => f32::INFINITY,
+                    (true, false) => sparse,
+                    (false, _) => LARGEST_SPARSE[0] * middle,
+                },
+            );
     }
     radii
 }

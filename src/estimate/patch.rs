@@ -2,6 +2,7 @@
 
 use super::cell::Cell;
 use super::eigen;
+use super::scans::Scans;
 use super::sites::Sites;
 use crate::geometry::Ellipse;
 use glam::{DMat2, DMat3, DVec2, DVec3, Vec3};
@@ -21,6 +22,8 @@ pub(super) struct Patch {
     pub roughness: f32,
     /// Distance of the third neighbour.
     pub spacing: f32,
+    /// Whether the neighbours are those in the site's scan: they tell how far the surface goes on.
+    pub of_scan: bool,
     /// The ellipse that covers the region.
     pub ellipse: Option<Ellipse>,
 }
@@ -28,6 +31,7 @@ pub(super) struct Patch {
 /// Computes patches.
 pub(super) struct Surveyor<'a> {
     sites: &'a Sites,
+    scans: &'a Scans,
     /// Number of neighbours if they surround the site.
     neighbours: usize,
     elliptical: bool,
@@ -57,6 +61,8 @@ const NOISY: f64 = 0.15;
 const SMOOTHER: f64 = 0.6;
 /// Iterations of the robust plane through noise.
 const SETTLING: usize = 3;
+/// Factor of the size of an ellipse in a scan, because those beside it have other axes.
+const BESIDE_OTHERS: f32 = 1.1;
 /// Least aspect of an ellipse.
 const LEAST_ASPECT: f64 = 0.125;
 
@@ -72,9 +78,10 @@ struct Plane {
 }
 
 impl<'a> Surveyor<'a> {
-    pub fn new(sites: &'a Sites, neighbours: usize, elliptical: bool) -> Self {
+    pub fn new(sites: &'a Sites, scans: &'a Scans, neighbours: usize, elliptical: bool) -> Self {
         Self {
             sites,
+            scans,
             neighbours,
             elliptical,
             cell: Cell::new(),
@@ -87,41 +94,61 @@ impl<'a> Surveyor<'a> {
 
     /// The patch around `site`. Writes the nearest neighbours to `edges`, padded with `site`.
     pub fn survey(&mut self, site: u32, edges: &mut [u32]) -> Patch {
-        let mut plane = self.look(site, self.neighbours);
+        let around = self.look(site, self.neighbours);
+        let in_scan = self.look_in_scan(site, around.is_line());
+        let of_scan = in_scan.is_some();
+        let plane = match in_scan {
+            Some(plane) => plane,
+            None if self.scans.has(site) => self.look(site, self.neighbours),
+            None => around,
+        };
         for (i, edge) in edges.iter_mut().enumerate() {
             *edge = self.near.get(i).copied().unwrap_or(site);
         }
-        let (open, noisy) = (self.cell.is_open(&self.flat), plane.thickness() > NOISY);
-        if plane.is_line() || open || noisy {
-            let wider = self.look(site, WIDER * self.neighbours);
-            let closes = open && !self.cell.is_open(&self.flat);
-            let smooths = noisy && wider.thickness() < SMOOTHER * plane.thickness();
-            plane = if plane.is_line() || closes || smooths {
-                wider
-            } else {
-                // An edge of the surface, or a crease: the nearer neighbours are more accurate, and do not bridge its bays.
-                self.look(site, self.neighbours)
-            };
-        }
+        let mut plane = if of_scan { plane } else { self.widen(site, plane) };
         let mut roughness = 0.0;
         if plane.thickness() > NOISY && !self.offsets.is_empty() {
             plane = self.settle(plane);
             roughness = self.distance_from(&plane) / self.median(DVec3::length);
         }
+        // A scan goes on to its borders, where the neighbours do not surround a site.
+        let is_in_scan = self.scans.has(site) && plane.thickness() <= NOISY;
+        let surrounded = !self.cell.is_open(&self.flat) && !plane.is_line();
         let mut patch = Patch {
             normal: plane.normal.as_vec3(),
             reach: self.cell.reach(&self.flat) as f32,
             flatness: plane.flatness() as f32,
-            is_surface: !self.cell.is_open(&self.flat) && !plane.is_line() && plane.thickness() < THICK,
+            is_surface: (is_in_scan || surrounded) && plane.thickness() < THICK,
             roughness: roughness as f32,
             spacing: self.distance(2) as f32,
+            of_scan,
             ellipse: None,
         };
-        if self.elliptical {
+        if self.elliptical || is_in_scan {
             self.stretch(&plane, &mut patch);
+            if is_in_scan {
+                patch.reach *= BESIDE_OTHERS;
+            }
         }
         self.limit(&mut patch);
         patch
+    }
+
+    /// The plane of more neighbours, where the nearest do not surround a site or are noisy and more of them are better.
+    fn widen(&mut self, site: u32, plane: Plane) -> Plane {
+        let (open, noisy) = (self.cell.is_open(&self.flat), plane.thickness() > NOISY);
+        if !(plane.is_line() || open || noisy) {
+            return plane;
+        }
+        let wider = self.look(site, WIDER * self.neighbours);
+        let closes = open && !self.cell.is_open(&self.flat);
+        let smooths = noisy && wider.thickness() < SMOOTHER * plane.thickness();
+        if plane.is_line() || closes || smooths {
+            wider
+        } else {
+            // An edge of the surface, or a crease: the nearer neighbours are more accurate, and do not bridge its bays.
+            self.look(site, self.neighbours)
+        }
     }
 
     /// Limits the radius at gaps that are wide relative to the distance of the nearest neighbours, the more so if these do not lie in a
@@ -168,11 +195,24 @@ impl<'a> Surveyor<'a> {
         plane
     }
 
+    /// The plane of the nearest neighbours in the scan of a site, if they lie in one and, unless `anyhow`, surround the site.
+    fn look_in_scan(&mut self, site: u32, anyhow: bool) -> Option<Plane> {
+        if !self.scans.nearest(site, self.neighbours, &mut self.near) {
+            return None;
+        }
+        let plane = self.look_at_near(site);
+        (plane.thickness() <= NOISY && (anyhow || !self.cell.is_open(&self.flat))).then_some(plane)
+    }
+
     /// Computes the plane of the `count` nearest sites and the Voronoi cell in it.
     fn look(&mut self, site: u32, count: usize) -> Plane {
-        let centre = self.sites.at(site).as_dvec3();
         self.near.clear();
         self.near.extend(self.sites.nearest(site, count));
+        self.look_at_near(site)
+    }
+
+    fn look_at_near(&mut self, site: u32) -> Plane {
+        let centre = self.sites.at(site).as_dvec3();
         self.offsets.clear();
         self.offsets.extend(self.near.iter().map(|&other| self.sites.at(other).as_dvec3() - centre));
         let plane = Plane::through(self.offsets.iter().map(|offset| (*offset, 1.0)));

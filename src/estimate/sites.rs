@@ -48,13 +48,27 @@ impl Sites {
         self.points[site as usize].into()
     }
 
+    /// Coordinates of all sites.
+    pub fn points(&self) -> &[[f32; 3]] {
+        &self.points
+    }
+
     /// Up to `count` nearest other sites, nearest first.
     pub fn nearest(&self, site: u32, count: usize) -> impl Iterator<Item = u32> + use<> {
-        let most = NonZero::new(count + 1).unwrap_or(NonZero::<usize>::MIN);
-        let query = &self.points[site as usize];
-        let found = self.tree.query(query).nearest_n::<SquaredEuclidean<f32>>(most).execute();
-        found.into_iter().map(|found| found.item).filter(move |&other| other != site).take(count)
+        nearest(&self.tree, &self.points, site, count)
     }
+}
+
+/// Up to `count` points of a tree other than point `index` that are nearest to it, nearest first.
+pub(super) fn nearest(
+    tree: &ImmutableKdTree<f32, 3>,
+    points: &[[f32; 3]],
+    index: u32,
+    count: usize,
+) -> impl Iterator<Item = u32> + use<> {
+    let most = NonZero::new(count + 1).unwrap_or(NonZero::<usize>::MIN);
+    let found = tree.query(&points[index as usize]).nearest_n::<SquaredEuclidean<f32>>(most).execute();
+    found.into_iter().map(|found| found.item).filter(move |&other| other != index).take(count)
 }
 
 /// The site of each point, and the first point of each site. Equal positions share a site.

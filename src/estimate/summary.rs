@@ -13,6 +13,7 @@ impl Estimated {
         let two_sided = some(counts.two_sided).filter(|_| normals.is_some());
         let scattered = some(counts.scattered);
         let billboards = some(counts.billboards);
+        let found = some(counts.scanner_found);
         let turned = some(counts.triangles_turned);
         let replaced = some(counts.vertices_replaced);
         let outliers = some(counts.outliers);
@@ -27,6 +28,9 @@ impl Estimated {
             two_sided.map(|count| format!("{count} two-sided")),
             scattered.map(|count| format!("{count} normals unlike their neighbours'")),
             billboards.map(|count| format!("{count} on no surface, as discs that face the eye")),
+            found.map(|count| {
+                format!("0,0,0 taken for the scanner of {count}, as their directions are a grid")
+            }),
             turned.map(|count| {
                 format!("{count} triangles turned round, as their surface is wound inwards or inconsistently")
             }),

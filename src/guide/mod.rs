@@ -14,7 +14,7 @@ macro_rules! chapter {
 }
 
 chapter!(getting_started, "getting-started.md", "demo");
-chapter!(files, "files.md", "lidar");
+chapter!(files, "files.md", "lidar", "scanner");
 chapter!(render, "render.md");
 chapter!(view, "view.md", "view");
 chapter!(convert, "convert.md");

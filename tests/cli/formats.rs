@@ -90,6 +90,36 @@ fn scans_models_and_gaussians_become_pictures() {
 }
 
 #[test]
+fn the_scanner_of_a_lidar_is_found_given_or_refused() {
+    let program = Program::new();
+    // Ground 2 below a lidar, whose ranges have errors.
+    let rings = (8..80).flat_map(|row| {
+        (0..720).map(move |column| {
+            let [down, around] = [row, column].map(|half| (f64::from(half) / 2.0).to_radians());
+            let error = 1.0 + 0.002 * (f64::from(720 * row + column) * 0.754_877).fract();
+            let range = 2.0 / down.tan() * error;
+            format!("{} {} {}\n", range * around.cos(), range * around.sin(), -2.0 * error)
+        })
+    });
+    program.write("a.xyz", rings.collect::<String>());
+    let camera = "--reference --size 40x40 --eye 0,-26,6 --target 0,-18,-2 --fov 60 --alpha mask";
+    let covered = |arguments: &str| {
+        let run = program.run(&format!("render a.xyz -o out.png {camera} {arguments}"));
+        run.text();
+        let text = "0,0,0 taken for the scanner of 51,840, as their directions are a grid";
+        (program.png("out.png").pixels().filter(|pixel| pixel[3] > 0).count(), run.err.contains(text))
+    };
+    let (found, refused) = (covered(""), covered("--scanner file"));
+    assert!(found.1 && !refused.1);
+    assert!(found.0 as f64 > 1.3 * refused.0 as f64, "{found:?} {refused:?}");
+    assert_eq!(covered("--scanner 0,0,0"), (found.0, false));
+    let run = program.run(&format!("render a.xyz -o out.png {camera} --scanner there"));
+    assert!(run.error(2).contains("give auto, file or X,Y,Z"), "{}", run.err);
+    let text = program.run("info a.xyz").text().to_owned();
+    assert!(text.contains("scanner: 51,840 points have theirs at 0,0,0"), "{text}");
+}
+
+#[test]
 fn bare_points_have_the_colours_of_their_intensity_unless_those_of_the_file_are_asked_for() {
     let program = Program::new();
     program.write("a.xyz", plane(|x, _| x.to_string()));

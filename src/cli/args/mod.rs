@@ -52,7 +52,7 @@ pub enum Command {
     #[cfg(feature = "viewer")]
     View(Box<View>),
     /// Prints the contents of a file or scene, and what is estimated of it
-    Info(Info),
+    Info(Box<Info>),
     /// Estimates surfels from points, and writes them, or the points alone, to a file
     Convert(Box<Convert>),
     /// Compares picture A with the ground truth B: colours, silhouette, normals, depths

@@ -1,13 +1,13 @@
 //! Options of every command that reads points: estimation of missing attributes, and colours.
 
-use crate::cli::values::{ColourBy, bounds, choice, colour_by, positive};
+use crate::cli::values::{ColourBy, bounds, choice, colour_by, positive, scanner};
 use clap::Args;
 use glam::DVec3;
 use std::num::NonZeroU64;
 use std::path::PathBuf;
 use std::sync::Arc;
 use surfel::Result;
-use surfel::estimate::{Estimate, MeshSampling};
+use surfel::estimate::{Estimate, MeshSampling, Scanner};
 use surfel::formats::{Filter, Returns, image};
 use surfel::geometry::{ColourMap, MipMap};
 use surfel::load::{Colouring, Uncoloured};
@@ -51,6 +51,11 @@ pub struct Points {
     /// Gives points on no surface, as in vegetation, an estimated normal, too; otherwise their discs face the eye
     #[arg(long)]
     pub no_billboards: bool,
+    /// Position of the scanner, in the files' coordinates: auto, file or X,Y,Z
+    ///
+    /// auto: where the file says; otherwise 0,0,0 if the directions of the points from there are a grid, as of lidars. file: where the file says, or unknown.
+    #[arg(long, value_name = "WHERE", value_parser = scanner, default_value = "auto", allow_hyphen_values = true)]
+    pub scanner: Scanner,
     /// Where the surfels of a mesh are
     #[arg(
         long,
@@ -86,6 +91,7 @@ impl Points {
             elliptical: self.elliptical,
             outlines: true,
             billboards: !self.no_billboards,
+            scanner: self.scanner,
             mesh_sampling: self.mesh_sampling,
             outliers: self.drop_outliers,
             sharp: None,
