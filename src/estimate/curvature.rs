@@ -1,6 +1,5 @@
 //! Curvatures from the nearest points: how far a surface bends away from the tangent plane.
 
-use super::scans::Scans;
 use super::sites::Sites;
 use crate::Progress;
 use crate::error::Result;
@@ -15,6 +14,8 @@ const NEIGHBOURS: usize = 10;
 const SAME_SIDE: f64 = 0.0;
 /// Weight of flatness in the directions of no neighbour, relative to that of a neighbour.
 const FLATNESS: f64 = 1e-3;
+/// Least distance of the farthest neighbour along the longer axis of an ellipse, semi-axes.
+const LEAST_REACH: f32 = 0.5;
 /// Number of surfels per task.
 const PIECE: usize = 1 << 12;
 
@@ -23,7 +24,6 @@ const PIECE: usize = 1 << 12;
 pub(super) fn curvatures(
     surfels: &Surfels,
     sites: &Sites,
-    scans: &Scans,
     progress: &dyn Progress,
 ) -> Result<Vec<Curvature>> {
     let mut curvatures = vec![Curvature::default(); surfels.len()];
@@ -32,10 +32,8 @@ pub(super) fn curvatures(
         let first = piece * PIECE;
         let mut near = Vec::new();
         for (curvature, i) in curvatures.iter_mut().zip(first..) {
-            let site = sites.of_point[i];
             near.clear();
-            near.extend(sites.nearest(site, NEIGHBOURS));
-            scans.nearest(site, NEIGHBOURS, &mut near);
+            near.extend(sites.nearest(sites.of_point[i], NEIGHBOURS));
             *curvature = curvature_at(surfels, sites, &near, i);
         }
         let piece = curvatures.len() as u64;
@@ -52,6 +50,9 @@ fn curvature_at(surfels: &Surfels, sites: &Sites, near: &[u32], i: usize) -> Cur
         return Curvature::default();
     }
     let site = sites.of_point[i];
+    if !reach_across(surfels, sites, near, i) {
+        return Curvature::default();
+    }
     let basis = tangents(normal);
     let clip = surfels.clips.as_ref().and_then(|clips| clips.get(i));
     // Beyond a clip line is another surface.
@@ -68,6 +69,14 @@ fn curvature_at(surfels: &Surfels, sites: &Sites, near: &[u32], i: usize) -> Cur
     Curvature::of_shape_operator(fit(circles) * (1.0 / f64::from(sites.unit)))
 }
 
+/// Whether the neighbours of an ellipse go on along its longer axis, rather than being all of one line of a scan.
+fn reach_across(surfels: &Surfels, sites: &Sites, near: &[u32], i: usize) -> bool {
+    let Some(ellipses) = &surfels.ellipses else { return true };
+    let at = sites.at(sites.of_point[i]);
+    let along = near.iter().map(|other| (sites.at(*other) - at).dot(ellipses[i].major).abs());
+    sites.unit * along.fold(0.0, f32::max) >= LEAST_REACH * surfels.radii[i]
+}
+
 /// The shape operator S with the least squares of tᵀ S t − κ, of unit tangents t and curvatures κ in their directions.
 fn fit(circles: impl Iterator<Item = (DVec2, f64)>) -> DMat2 {
     let flat = (DMat3::from_diagonal(DVec3::splat(FLATNESS)), DVec3::ZERO);
@@ -82,6 +91,7 @@ fn fit(circles: impl Iterator<Item = (DVec2, f64)>) -> DMat2 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Ellipse;
     use glam::Vec3;
 
     /// The curvatures of `count` points of a surface, given by the position and normal at parameters from 0 to 1.
@@ -94,7 +104,7 @@ mod tests {
             ..Surfels::default()
         };
         let sites = Sites::new(&surfels.positions, &()).unwrap();
-        curvatures(&surfels, &sites, &Scans::none(&sites), &()).unwrap()
+        curvatures(&surfels, &sites, &()).unwrap()
     }
 
     fn middle(values: impl Iterator<Item = f64>) -> f64 {
@@ -145,6 +155,27 @@ mod tests {
         let found = of(1000, saddle);
         assert!((middle(found.iter().map(|k| k.along(DVec2::X))) - 3.0).abs() < 0.1);
         assert!((middle(found.iter().map(|k| k.along(DVec2::Y))) + 1.0).abs() < 0.1);
+    }
+
+    #[test]
+    fn neighbours_in_one_line_tell_none_across_it() {
+        // A line of points with noise, beside which are no others.
+        let positions: Vec<Vec3> = (0..100)
+            .map(|i| Vec3::new(i as f32, (i * 7 % 5) as f32 * 0.1, (i * 3 % 4) as f32 * -0.1))
+            .collect();
+        let of = |radius: f32| {
+            let surfels = Surfels {
+                normals: vec![Vec3::Z; positions.len()],
+                radii: vec![radius; positions.len()],
+                ellipses: Some(vec![Ellipse { major: Vec3::Y, aspect: 0.1 }; positions.len()]),
+                positions: positions.clone(),
+                ..Surfels::default()
+            };
+            let sites = Sites::new(&surfels.positions, &()).unwrap();
+            curvatures(&surfels, &sites, &()).unwrap()
+        };
+        assert!(of(10.0).iter().all(|k| *k == Curvature::default()));
+        assert!(of(0.1).iter().any(|k| *k != Curvature::default()));
     }
 
     #[test]

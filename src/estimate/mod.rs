@@ -96,7 +96,7 @@ pub struct Estimate {
     /// Whether points on no surface, as in vegetation, become billboards ([`Surfels::is_billboard`]) instead of discs with a normal that means
     /// nothing. Their discs are small, so that leaves stay separate.
     pub billboards: bool,
-    /// Where the scanner was. Normals face it, and the points next to each other as it sees them tell radii and normals where the lines of a
+    /// Where the scanner was. Normals face it, and the points next to each other as it sees them give radii and normals where the lines of a
     /// scan are far apart.
     pub scanner: Scanner,
     /// Where the surfels of meshes are.
@@ -274,16 +274,15 @@ impl Cloud {
         let sites = (lacks_anything || how.outlines)
             .then(|| Sites::new(&draft.surfels.positions, progress))
             .transpose()?;
-        let scans = sites.as_ref().map(|sites| Scans::new(&mut draft, sites, how.scanner));
-        let near = sites.as_ref().zip(scans.as_ref());
-        if let Some((sites, scans)) = near.filter(|_| lacks_anything) {
-            neighbours::fill(&mut draft, sites, scans, how, progress)?;
+        if let Some(sites) = sites.as_ref().filter(|_| lacks_anything) {
+            let scans = Scans::new(&mut draft, sites, how.scanner);
+            neighbours::fill(&mut draft, sites, &scans, how, progress)?;
         }
         let triangles = std::mem::take(&mut draft.triangles);
         let (mut surfels, mut estimated) = draft.finish(how)?;
-        if let Some((sites, scans)) = near.filter(|_| how.outlines) {
-            surfels.curvatures = Some(curvature::curvatures(&surfels, sites, scans, progress)?);
-            estimated.bounded = boundary::clip(&mut surfels, &triangles, sites);
+        if let Some(sites) = sites.filter(|_| how.outlines) {
+            surfels.curvatures = Some(curvature::curvatures(&surfels, &sites, progress)?);
+            estimated.bounded = boundary::clip(&mut surfels, &triangles, &sites);
         }
         if let Some(angle) = how.sharp {
             estimated.clipped = creases::clip(&mut surfels, angle, how, progress)?;

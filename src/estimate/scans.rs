@@ -47,14 +47,10 @@ struct Scan {
 const NONE: u16 = u16::MAX;
 
 impl Scans {
-    /// No scans.
-    pub fn none(sites: &Sites) -> Self {
-        Self { scans: Vec::new(), of_site: vec![NONE; sites.len()], index: vec![0; sites.len()] }
-    }
-
     /// The scans whose scanner is known and that have a point per direction of a grid. The scanner of a draft without one may be found.
     pub fn new(draft: &mut Draft, sites: &Sites, scanner: Scanner) -> Self {
-        let mut all = Self::none(sites);
+        let mut all =
+            Self { scans: Vec::new(), of_site: vec![NONE; sites.len()], index: vec![0; sites.len()] };
         if scanner == Scanner::Auto && draft.views() == [View::Unknown] {
             let eye = (-draft.surfels.origin).as_vec3();
             if is_lidar(eye / sites.unit, sites) {
