@@ -20,6 +20,8 @@ const FEWEST: usize = 1000;
 const SAMPLE: usize = 2000;
 /// Least median ratio of the distances of the two nearest points. It is 1 in any grid of directions, and √½ among random directions.
 const REGULAR: f32 = 0.85;
+/// Largest number of points whose scanner is looked for: a lidar sees fewer in a turn.
+const MOST: usize = 4_000_000;
 /// Least of these where the position of the scanner is not known.
 const CLEARLY_REGULAR: f32 = 0.93;
 /// Largest spread of the angles between points there, relative to that of their distances, which grow with the range.
@@ -30,7 +32,7 @@ const DEEP: f32 = 2.0;
 /// The sites of the scans of a cloud.
 pub(super) struct Scans {
     scans: Vec<Scan>,
-    /// The scan of each site; [`NONE`] if it is in none.
+    /// The scan of each site; [`NONE`] if it is in none. Empty without scans.
     of_site: Vec<u16>,
     /// Its index in the scan.
     index: Vec<u32>,
@@ -49,8 +51,6 @@ const NONE: u16 = u16::MAX;
 impl Scans {
     /// The scans whose scanner is known and that have a point per direction of a grid. The scanner of a draft without one may be found.
     pub fn new(draft: &mut Draft, sites: &Sites, scanner: Scanner) -> Self {
-        let mut all =
-            Self { scans: Vec::new(), of_site: vec![NONE; sites.len()], index: vec![0; sites.len()] };
         if scanner == Scanner::Auto && draft.views() == [View::Unknown] {
             let eye = (-draft.surfels.origin).as_vec3();
             if is_lidar(eye / sites.unit, sites) {
@@ -58,11 +58,20 @@ impl Scans {
                 draft.estimated.scanner_found = draft.surfels.len() as u64;
             }
         }
-        for (scan, view) in draft.views().iter().enumerate().take(usize::from(NONE)) {
+        if !draft.views().iter().any(|view| matches!(view, View::From(_))) {
+            return Self { scans: Vec::new(), of_site: Vec::new(), index: Vec::new() };
+        }
+        let mut members = vec![Vec::new(); draft.views().len()];
+        for site in 0..sites.len() as u32 {
+            if let Some(members) = members.get_mut(draft.scan(sites.point[site as usize] as usize)) {
+                members.push(site);
+            }
+        }
+        let mut all =
+            Self { scans: Vec::new(), of_site: vec![NONE; sites.len()], index: vec![0; sites.len()] };
+        for (view, members) in draft.views().iter().zip(members).take(usize::from(NONE)) {
             let View::From(eye) = *view else { continue };
-            let members = (0..sites.len() as u32)
-                .filter(|site| draft.scan(sites.point[*site as usize] as usize) == scan);
-            let Some(found) = Scan::new(members.collect(), eye / sites.unit, sites) else { continue };
+            let Some(found) = Scan::new(members, eye / sites.unit, sites) else { continue };
             for (index, site) in found.sites.iter().enumerate() {
                 (all.of_site[*site as usize], all.index[*site as usize]) =
                     (all.scans.len() as u16, index as u32);
@@ -74,13 +83,13 @@ impl Scans {
 
     /// Whether a site is in a scan.
     pub fn has(&self, site: u32) -> bool {
-        self.of_site[site as usize] != NONE
+        self.of_site.get(site as usize).is_some_and(|scan| *scan != NONE)
     }
 
     /// Replaces the sites that are nearest to `site` in space by up to `count` that are so by direction, nearest first. Returns false, and
     /// leaves them, if some are of other scans, which fill the gaps of this one, or the site is in none.
     pub fn nearest(&self, site: u32, count: usize, near: &mut Vec<u32>) -> bool {
-        let number = self.of_site[site as usize];
+        let Some(&number) = self.of_site.get(site as usize) else { return false };
         let is_alone = || near.iter().all(|other| self.of_site[*other as usize] == number);
         let Some(scan) = self.scans.get(usize::from(number)).filter(|_| is_alone()) else { return false };
         let found = nearest(&scan.tree, &scan.points, self.index[site as usize], count);
@@ -119,7 +128,7 @@ impl Scan {
 /// Whether points are those that a lidar sees around it from `eye`: at many ranges in a grid by direction, whose angles are more even than
 /// the distances in space.
 fn is_lidar(eye: Vec3, sites: &Sites) -> bool {
-    if sites.len() < FEWEST {
+    if !(FEWEST..=MOST).contains(&sites.len()) {
         return false;
     }
     let all = || 0..sites.len() as u32;
