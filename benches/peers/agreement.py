@@ -81,8 +81,8 @@ def of_las(program, path, folder):
     if not any(columns.get(name, np.zeros(1)).any() for name in colours):
         for name in colours:
             columns.pop(name, None), ours.pop(name, None)
-    # Flags that no point has, and fields of wave packets, which surfel leaves out with a warning.
-    left_out = [name for name in columns if "wave" in name or name in ("x_t", "y_t", "z_t", "return_point_wave_location")]
+    # Fields of wave packets, which surfel leaves out with a warning.
+    left_out = [name for name in columns if "wave" in name or name in ("x_t", "y_t", "z_t")]
     return len(source.points), "laspy", {name: (columns[name], ours.get(name)) for name in columns if name not in left_out}
 
 

@@ -210,9 +210,13 @@ fn sources(estimated: &Estimated) -> String {
         (estimated.line_radii_from_extent, "from the lines' extent"),
     ]);
     let lines = if lines.is_empty() { lines } else { format!("radii of lines: {lines}\n") };
-    let scanner =
-        list(&[(estimated.scanner_found, "points have theirs at 0,0,0, as their directions are a grid")]);
-    let scanner = if scanner.is_empty() { scanner } else { format!("scanner: {scanner}\n") };
+    let scanner = match estimated.scanner_found {
+        0 => String::new(),
+        count => format!(
+            "scanner: 0,0,0, as the directions of {} points from there are a grid\n",
+            thousands(count)
+        ),
+    };
     format!("{scanner}normals: {normals}\nradii: {radii}\n{lines}")
 }
 

@@ -37,6 +37,8 @@ pub(super) struct Surveyor<'a> {
     elliptical: bool,
     cell: Cell,
     near: Vec<u32>,
+    /// The nearest sites in space, while those in a scan are tried.
+    in_space: Vec<u32>,
     /// Neighbours relative to the site, and the ones in its plane.
     offsets: Vec<DVec3>,
     flat: Vec<DVec2>,
@@ -86,6 +88,7 @@ impl<'a> Surveyor<'a> {
             elliptical,
             cell: Cell::new(),
             near: Vec::new(),
+            in_space: Vec::new(),
             offsets: Vec::new(),
             flat: Vec::new(),
             distances: Vec::new(),
@@ -97,15 +100,10 @@ impl<'a> Surveyor<'a> {
         let around = self.look(site, self.neighbours);
         let in_scan = self.look_in_scan(site, around.is_line());
         let of_scan = in_scan.is_some();
-        let plane = match in_scan {
-            Some(plane) => plane,
-            None if self.scans.has(site) => self.look(site, self.neighbours),
-            None => around,
-        };
         for (i, edge) in edges.iter_mut().enumerate() {
             *edge = self.near.get(i).copied().unwrap_or(site);
         }
-        let mut plane = if of_scan { plane } else { self.widen(site, plane) };
+        let mut plane = in_scan.unwrap_or_else(|| self.widen(site, around));
         let mut roughness = 0.0;
         if plane.thickness() > NOISY && !self.offsets.is_empty() {
             plane = self.settle(plane);
@@ -195,13 +193,20 @@ impl<'a> Surveyor<'a> {
         plane
     }
 
-    /// The plane of the nearest neighbours in the scan of a site, if they lie in one and, unless `anyhow`, surround the site.
+    /// The plane of the nearest neighbours in the scan of a site, if they lie in one and, unless `anyhow`, surround the site. Otherwise the
+    /// neighbours stay those in space.
     fn look_in_scan(&mut self, site: u32, anyhow: bool) -> Option<Plane> {
+        self.in_space.clone_from(&self.near);
         if !self.scans.nearest(site, self.neighbours, &mut self.near) {
             return None;
         }
         let plane = self.look_at_near(site);
-        (plane.thickness() <= NOISY && (anyhow || !self.cell.is_open(&self.flat))).then_some(plane)
+        if plane.thickness() <= NOISY && (anyhow || !self.cell.is_open(&self.flat)) {
+            return Some(plane);
+        }
+        std::mem::swap(&mut self.near, &mut self.in_space);
+        self.look_at_near(site);
+        None
     }
 
     /// Computes the plane of the `count` nearest sites and the Voronoi cell in it.
@@ -211,6 +216,7 @@ impl<'a> Surveyor<'a> {
         self.look_at_near(site)
     }
 
+    /// Computes the plane of the sites that are near and the Voronoi cell in it.
     fn look_at_near(&mut self, site: u32) -> Plane {
         let centre = self.sites.at(site).as_dvec3();
         self.offsets.clear();
