@@ -20,6 +20,7 @@ mod orient;
 mod outliers;
 mod patch;
 mod reach;
+mod scan;
 mod scans;
 mod scatter;
 mod sheet;
@@ -275,7 +276,7 @@ impl Cloud {
             .then(|| Sites::new(&draft.surfels.positions, progress))
             .transpose()?;
         if let Some(sites) = sites.as_ref().filter(|_| lacks_anything) {
-            let scans = Scans::new(&mut draft, sites, how.scanner);
+            let scans = Scans::new(&mut draft, sites, how);
             neighbours::fill(&mut draft, sites, &scans, how, progress)?;
         }
         let triangles = std::mem::take(&mut draft.triangles);

@@ -2,6 +2,7 @@
 
 use super::cell::Cell;
 use super::eigen;
+use super::scan::Around;
 use super::scans::Scans;
 use super::sites::Sites;
 use crate::geometry::Ellipse;
@@ -36,6 +37,7 @@ pub(super) struct Surveyor<'a> {
     neighbours: usize,
     elliptical: bool,
     cell: Cell,
+    around: Around,
     near: Vec<u32>,
     /// The nearest sites in space, while those in a scan are tried.
     in_space: Vec<u32>,
@@ -87,6 +89,7 @@ impl<'a> Surveyor<'a> {
             neighbours,
             elliptical,
             cell: Cell::new(),
+            around: Around::new(),
             near: Vec::new(),
             in_space: Vec::new(),
             offsets: Vec::new(),
@@ -109,9 +112,10 @@ impl<'a> Surveyor<'a> {
             plane = self.settle(plane);
             roughness = self.distance_from(&plane) / self.median(DVec3::length);
         }
+        let (open, thin) = (self.cell.is_open(&self.flat), plane.thickness() <= NOISY);
         // A scan goes on to its borders, where the neighbours do not surround a site.
-        let is_in_scan = self.scans.has(site) && plane.thickness() <= NOISY;
-        let surrounded = !self.cell.is_open(&self.flat) && !plane.is_line();
+        let is_in_scan = of_scan || (self.scans.has(site) && open && thin);
+        let surrounded = !open && !plane.is_line();
         let mut patch = Patch {
             normal: plane.normal.as_vec3(),
             reach: self.cell.reach(&self.flat) as f32,
@@ -193,15 +197,16 @@ impl<'a> Surveyor<'a> {
         plane
     }
 
-    /// The plane of the nearest neighbours in the scan of a site, if they lie in one and, unless `anyhow`, surround the site. Otherwise the
-    /// neighbours stay those in space.
-    fn look_in_scan(&mut self, site: u32, anyhow: bool) -> Option<Plane> {
+    /// The plane of the neighbours that surround a site in its scan, or, where those in space are a line, that are nearest, if they lie in one.
+    /// Otherwise the neighbours stay those in space.
+    fn look_in_scan(&mut self, site: u32, is_line: bool) -> Option<Plane> {
         self.in_space.clone_from(&self.near);
-        if !self.scans.nearest(site, self.neighbours, &mut self.near) {
+        let otherwise = if is_line { self.neighbours } else { 0 };
+        if !self.scans.nearest(site, otherwise, &mut self.around, &mut self.near) {
             return None;
         }
         let plane = self.look_at_near(site);
-        if plane.thickness() <= NOISY && (anyhow || !self.cell.is_open(&self.flat)) {
+        if plane.thickness() <= NOISY {
             return Some(plane);
         }
         std::mem::swap(&mut self.near, &mut self.in_space);

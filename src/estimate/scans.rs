@@ -1,23 +1,13 @@
-//! Neighbours in a scan: the points next to each other as the scanner sees them.
-//!
-//! Where a scanner sees a surface at a grazing angle, such as the ground far from it, the points nearest in space are all of one line of the
-//! scan. They tell neither the normal nor how far the next line is. The points nearest by direction surround a point at any angle. They are
-//! found in space seen from the scanner with ranges r compressed to rᵏ, in which points beyond a step in range stay far away.
+//! Scans of a cloud, whose points have neighbours by direction, and the scanner of a lidar that does not state it.
 
-use super::Scanner;
 use super::draft::Draft;
-use super::sites::{Sites, nearest};
+use super::scan::{Around, FEWEST, Scan, sample};
+use super::sites::Sites;
+use super::{Estimate, Scanner};
 use crate::geometry::View;
 use glam::Vec3;
-use kiddo::ImmutableKdTree;
 use rayon::prelude::*;
 
-/// Exponent of ranges. A surface at an angle of incidence whose tangent is 1 / k is as dense along its slope as across.
-const COMPRESSION: f32 = 0.05;
-/// Least number of points of a scan.
-const FEWEST: usize = 1000;
-/// Number of points from which a scan is judged.
-const SAMPLE: usize = 2000;
 /// Least median ratio of the distances of the two nearest points. It is 1 in any grid of directions, and √½ among random directions.
 const REGULAR: f32 = 0.85;
 /// Largest number of points whose scanner is looked for: a lidar sees fewer in a turn.
@@ -38,20 +28,13 @@ pub(super) struct Scans {
     index: Vec<u32>,
 }
 
-/// The sites that a scanner saw from one position.
-struct Scan {
-    tree: ImmutableKdTree<f32, 3>,
-    points: Vec<[f32; 3]>,
-    sites: Vec<u32>,
-}
-
 /// No scan.
 const NONE: u16 = u16::MAX;
 
 impl Scans {
     /// The scans whose scanner is known and that have a point per direction of a grid. The scanner of a draft without one may be found.
-    pub fn new(draft: &mut Draft, sites: &Sites, scanner: Scanner) -> Self {
-        if scanner == Scanner::Auto && draft.views() == [View::Unknown] {
+    pub fn new(draft: &mut Draft, sites: &Sites, how: &Estimate) -> Self {
+        if how.scanner == Scanner::Auto && draft.views() == [View::Unknown] {
             let eye = (-draft.surfels.origin).as_vec3();
             if is_lidar(eye / sites.unit, sites) {
                 draft.set_view(View::From(eye));
@@ -71,8 +54,8 @@ impl Scans {
             Self { scans: Vec::new(), of_site: vec![NONE; sites.len()], index: vec![0; sites.len()] };
         for (view, members) in draft.views().iter().zip(members).take(usize::from(NONE)) {
             let View::From(eye) = *view else { continue };
-            let Some(found) = Scan::new(members, eye / sites.unit, sites) else { continue };
-            for (index, site) in found.sites.iter().enumerate() {
+            let Some(found) = scan_of(members, eye / sites.unit, sites, how.neighbours) else { continue };
+            for (index, site) in found.sites().iter().enumerate() {
                 (all.of_site[*site as usize], all.index[*site as usize]) =
                     (all.scans.len() as u16, index as u32);
             }
@@ -86,43 +69,21 @@ impl Scans {
         self.of_site.get(site as usize).is_some_and(|scan| *scan != NONE)
     }
 
-    /// Replaces the sites that are nearest to `site` in space by up to `count` that are so by direction, nearest first. Returns false, and
-    /// leaves them, if some are of other scans, which fill the gaps of this one, or the site is in none.
-    pub fn nearest(&self, site: u32, count: usize, near: &mut Vec<u32>) -> bool {
+    /// Replaces the sites that are nearest to `site` in space by those that surround it as the scanner sees it, nearest first, or, if none
+    /// do, by the `otherwise` nearest by direction. Returns false, and leaves them, without any, if some are of other scans, which fill the
+    /// gaps of this one, or if the site is in none.
+    pub fn nearest(&self, site: u32, otherwise: usize, around: &mut Around, near: &mut Vec<u32>) -> bool {
         let Some(&number) = self.of_site.get(site as usize) else { return false };
         let is_alone = || near.iter().all(|other| self.of_site[*other as usize] == number);
         let Some(scan) = self.scans.get(usize::from(number)).filter(|_| is_alone()) else { return false };
-        let found = nearest(&scan.tree, &scan.points, self.index[site as usize], count);
-        near.clear();
-        near.extend(found.map(|index| scan.sites[index as usize]));
-        true
+        scan.nearest(self.index[site as usize], otherwise, around, near)
     }
 }
 
-impl Scan {
-    /// The scan of some sites, unless it is none: few points, or directions that are no grid.
-    fn new(sites: Vec<u32>, eye: Vec3, all: &Sites) -> Option<Self> {
-        Self::of(sites, eye, all).filter(|scan| scan.spacing().regularity > REGULAR)
-    }
-
-    fn of(sites: Vec<u32>, eye: Vec3, all: &Sites) -> Option<Self> {
-        if sites.len() < FEWEST {
-            return None;
-        }
-        let compressed = |site: &u32| {
-            let beam = all.at(*site) - eye;
-            (beam * beam.length().max(f32::MIN_POSITIVE).powf(COMPRESSION - 1.0)).to_array()
-        };
-        let points: Vec<[f32; 3]> = sites.par_iter().map(compressed).collect();
-        let is_finite = points.iter().flatten().all(|coordinate| coordinate.is_finite());
-        let tree = ImmutableKdTree::new_from_slice(&points).ok().filter(|_| is_finite)?;
-        Some(Self { tree, points, sites })
-    }
-
-    /// The spacing of the directions.
-    fn spacing(&self) -> Spacing {
-        Spacing::of(&self.points, |index, count| nearest(&self.tree, &self.points, index, count))
-    }
+/// The scan of some sites, unless it is none: few points, or directions that are no grid.
+fn scan_of(members: Vec<u32>, eye: Vec3, all: &Sites, neighbours: usize) -> Option<Scan> {
+    let is_grid = |scan: &Scan| Spacing::by_direction(scan).regularity > REGULAR;
+    Scan::new(members, eye, all).filter(is_grid).map(|scan| scan.reaching_around(neighbours))
 }
 
 /// Whether points are those that a lidar sees around it from `eye`: at many ranges in a grid by direction, whose angles are more even than
@@ -136,8 +97,8 @@ fn is_lidar(eye: Vec3, sites: &Sites) -> bool {
     if spread(&mut ranges, 0.1) <= DEEP {
         return false;
     }
-    let Some(scan) = Scan::of(all().collect(), eye, sites) else { return false };
-    let by_direction = scan.spacing();
+    let Some(scan) = Scan::new(all().collect(), eye, sites) else { return false };
+    let by_direction = Spacing::by_direction(&scan);
     let in_space = Spacing::of(sites.points(), |index, count| sites.nearest(index, count));
     by_direction.regularity > CLEARLY_REGULAR && by_direction.spread < EVEN * in_space.spread
 }
@@ -151,6 +112,11 @@ struct Spacing {
 }
 
 impl Spacing {
+    /// The spacing of the directions of a scan.
+    fn by_direction(scan: &Scan) -> Self {
+        Self::of(scan.points(), |index, count| scan.by_direction(index, count))
+    }
+
     /// The spacing of some of the points.
     fn of<I: Iterator<Item = u32>>(points: &[[f32; 3]], nearest: impl Fn(u32, usize) -> I + Sync) -> Self {
         let two = |index: usize| {
@@ -158,8 +124,7 @@ impl Spacing {
             let mut near = nearest(index as u32, 2).map(|other| at.distance(points[other as usize].into()));
             Some([near.next()?, near.next()?])
         };
-        let step = points.len().div_ceil(SAMPLE).max(1);
-        let pairs: Vec<[f32; 2]> = (0..points.len()).into_par_iter().step_by(step).filter_map(two).collect();
+        let pairs: Vec<[f32; 2]> = sample(points.len()).filter_map(two).collect();
         let mut ratios: Vec<f32> = pairs.iter().map(|[first, second]| first / second).collect();
         let mut first: Vec<f32> = pairs.iter().map(|[first, _]| *first).collect();
         Self { regularity: at_part(&mut ratios, 0.5), spread: spread(&mut first, 0.25) }
@@ -189,17 +154,30 @@ mod tests {
     /// Angle between beams.
     const STEP: f32 = 0.0087;
 
-    /// Where beams from `eye` with azimuths and elevations in steps meet the ground, which is at z = 0.
-    fn ground(eye: Vec3) -> Vec<Vec3> {
-        let elevations = (8..80).map(|row| -STEP * row as f32);
-        let beams = elevations.flat_map(|elevation| {
+    /// Where beams from `eye` with azimuths and elevations in steps, of which only each `line`-th is there, meet the ground, which is at
+    /// z = 0. Ranges have an error of up to `noise`.
+    fn beams(eye: Vec3, line: usize, noise: f32) -> Vec<Vec3> {
+        let elevations = (8..80).step_by(line).map(|row| -STEP * row as f32);
+        let directions = elevations.flat_map(|elevation| {
             (0..720).map(move |column| {
-                let range = eye.z / -elevation.tan();
                 let (sin, cos) = (STEP * column as f32).sin_cos();
-                Vec3::new(eye.x + range * cos, eye.y + range * sin, 0.0)
+                Vec3::new(cos, sin, elevation.tan())
             })
         });
-        beams.collect()
+        let meet = |(i, direction): (usize, Vec3)| {
+            eye + direction * (eye.z / -direction.z)
+                + 2.0 * noise * part(i, 0.754_877) * direction.normalize()
+        };
+        directions.enumerate().map(meet).collect()
+    }
+
+    fn ground(eye: Vec3) -> Vec<Vec3> {
+        beams(eye, 1, 0.0)
+    }
+
+    /// A number from -½ to ½.
+    fn part(i: usize, factor: f64) -> f32 {
+        (i as f64 * factor).fract() as f32 - 0.5
     }
 
     fn surfels(positions: Vec<Vec3>, view: View, scanner: Scanner) -> (Surfels, u64) {
@@ -245,15 +223,34 @@ mod tests {
     }
 
     #[test]
+    fn the_ground_is_as_whole_with_noise_and_with_lines_far_apart() {
+        let eye = HEIGHT * Vec3::Z;
+        for (line, noise, least) in [(1, 0.02, 1.0), (1, 0.05, 1.0), (7, 0.0, 0.95), (7, 0.02, 0.95)] {
+            let covered_by = |scanner| covered(&surfels(beams(eye, line, noise), View::Unknown, scanner).0);
+            let [known, unknown] = [Scanner::At(eye.as_dvec3()), Scanner::OfFile].map(covered_by);
+            assert!(known >= least && known > unknown, "{line} {noise}: {known} {unknown}");
+        }
+    }
+
+    #[test]
+    fn discs_at_the_border_of_a_scan_are_as_those_in_it() {
+        let eye = HEIGHT * Vec3::Z;
+        let half = ground(eye).into_iter().filter(|at| at.y > -0.001).collect();
+        let (surfels, _) = surfels(half, View::From(eye), Scanner::OfFile);
+        // 3 m away the lines are 0.06 m apart, and the points of a line 0.03 m; at 4 m, 0.1 m and 0.04 m.
+        let is_border =
+            |i: &usize| (3.0..4.0).contains(&surfels.positions[*i].x) && surfels.positions[*i].y < 0.001;
+        let aspects: Vec<f32> = (0..surfels.len())
+            .filter(is_border)
+            .map(|i| surfels.ellipses.as_ref().unwrap()[i].aspect)
+            .collect();
+        assert!(aspects.len() > 5 && aspects.iter().all(|aspect| *aspect < 0.8), "{aspects:?}");
+    }
+
+    #[test]
     fn the_scanner_at_0_of_a_lidar_is_found_and_none_in_other_points() {
         let eye = HEIGHT * Vec3::Z;
-        let part = |i: usize, factor: f64| (i as f64 * factor).fract() as f32 - 0.5;
-        // Ranges have an error of up to 2 cm.
-        let noisy = |(i, at): (usize, Vec3)| {
-            let beam = at - eye;
-            beam + 0.04 * part(i, 0.754_877) * beam.normalize()
-        };
-        let lidar: Vec<Vec3> = ground(eye).into_iter().enumerate().map(noisy).collect();
+        let lidar: Vec<Vec3> = beams(eye, 1, 0.02).into_iter().map(|at| at - eye).collect();
         let count = lidar.len() as u64;
         let found = |positions: Vec<Vec3>, scanner| surfels(positions, View::Unknown, scanner).1;
         assert_eq!(found(lidar.clone(), Scanner::Auto), count);
