@@ -50,7 +50,7 @@ pub struct Convert {
     /// What points are coloured by
     #[command(flatten)]
     pub colours: Colours,
-    /// Up direction, for --color-by height [default: 0,0,1 for LAS, LAZ, E57, PTX and wide flat bare points, 0,-1,0 for 3D Gaussians but SPZ, otherwise 0,1,0]
+    /// Up direction, for --color-by height [default: 0,0,1 for LAS, LAZ, E57, PTX and wide flat bare points, 0,-1,0 for depth images and 3D Gaussians but SPZ, otherwise 0,1,0]
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
     pub up: Option<DVec3>,
     /// Prints nothing but warnings and errors

@@ -238,7 +238,7 @@ pub struct Camera {
     /// The point that the camera looks at [default: the centre of the scene]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub target: Option<DVec3>,
-    /// Up direction of the picture [default: 0,0,1 for LAS, LAZ, E57, PTX and wide flat bare points, 0,-1,0 for 3D Gaussians but SPZ, otherwise 0,1,0]
+    /// Up direction of the picture [default: 0,0,1 for LAS, LAZ, E57, PTX and wide flat bare points, 0,-1,0 for depth images and 3D Gaussians but SPZ, otherwise 0,1,0]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub up: Option<DVec3>,
     /// Vertical angle of view, degrees [default: 45]
