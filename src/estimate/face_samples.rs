@@ -39,11 +39,11 @@ const MOST_TRIANGLES: f64 = 2.2;
 const ALIKE: f64 = 0.707;
 
 /// Replaces the discs of vertices by ellipses on the triangles, if [`MeshSampling`] says so. Only of meshes whose radii are all of faces, and
-/// without attributes that belong to points.
-pub(super) fn replace(draft: &mut Draft, how: &Estimate) {
+/// without attributes that belong to points. Returns whether it did.
+pub(super) fn replace(draft: &mut Draft, how: &Estimate) -> bool {
     let textures = draft.face_textures.as_ref().filter(|_| how.mesh_sampling != MeshSampling::Vertices);
     let colours = textures.map(FaceColours::new);
-    let Some(areas) = areas_of_sampled(draft, colours.as_ref(), how) else { return };
+    let Some(areas) = areas_of_sampled(draft, colours.as_ref(), how) else { return false };
     let mesh = Mesh::new(draft, colours.as_ref(), how.outlines);
     let kept: Vec<usize> = (0..draft.triangles.len()).filter(|&i| areas[i] > 0.0).collect();
     let faces: Vec<Face> = kept.par_iter().map(|&i| mesh.face(i, areas[i])).collect();
@@ -62,6 +62,7 @@ pub(super) fn replace(draft: &mut Draft, how: &Estimate) {
         ..draft.estimated
     };
     draft.replace(surfels);
+    true
 }
 
 /// The areas of the triangles, if they are sampled.
@@ -310,22 +311,39 @@ mod tests {
         assert!((12..100).contains(&surfels.len()), "{} surfels of a cube", surfels.len());
     }
 
+    /// Vertices of the sides of a grid.
+    const SIDE: u32 = 130;
+
+    /// A plane grid whose columns are `width` apart, in turn with 1.
+    fn grid(width: f32) -> Cloud {
+        let at = |x: u32, y: u32| Vec3::new((x / 2) as f32 * (1.0 + width) + (x % 2) as f32, y as f32, 0.0);
+        let squares = (0..SIDE - 1).flat_map(|y| (0..SIDE - 1).map(move |x| SIDE * y + x));
+        let square = |i| [[i, i + 1, i + SIDE], [i + 1, i + SIDE + 1, i + SIDE]];
+        Cloud {
+            positions: (0..SIDE * SIDE).map(|i| at(i % SIDE, i / SIDE)).collect(),
+            triangles: squares.flat_map(square).collect(),
+            ..Cloud::default()
+        }
+    }
+
+    #[test]
+    fn ellipses_on_triangles_stay_where_discs_are_to_be_elliptical() {
+        let of = |elliptical, width| {
+            let how = Estimate { elliptical, ..Estimate::default() };
+            grid(width).into_surfels(&how, &()).unwrap()
+        };
+        assert_eq!(of(true, 8.0), of(false, 8.0));
+        let (at_vertices, estimated) = of(true, 1.0);
+        let all = u64::from(SIDE * SIDE);
+        assert!(at_vertices.ellipses.is_some() && at_vertices.len() as u64 == all);
+        assert_eq!((estimated.radii_from_faces, estimated.radii_from_neighbours), (0, all));
+    }
+
     #[test]
     fn an_even_mesh_keeps_its_vertices_and_an_uneven_one_does_not() {
-        // A plane grid whose columns are `width` apart, in turn with 1.
-        const SIDE: u32 = 130;
         let replaced = |width: f32, mesh_sampling| {
-            let at =
-                |x: u32, y: u32| Vec3::new((x / 2) as f32 * (1.0 + width) + (x % 2) as f32, y as f32, 0.0);
-            let squares = (0..SIDE - 1).flat_map(|y| (0..SIDE - 1).map(move |x| SIDE * y + x));
-            let square = |i| [[i, i + 1, i + SIDE], [i + 1, i + SIDE + 1, i + SIDE]];
-            let cloud = Cloud {
-                positions: (0..SIDE * SIDE).map(|i| at(i % SIDE, i / SIDE)).collect(),
-                triangles: squares.flat_map(square).collect(),
-                ..Cloud::default()
-            };
             let how = Estimate { mesh_sampling, ..Estimate::default() };
-            cloud.into_surfels(&how, &()).unwrap().1.vertices_replaced
+            grid(width).into_surfels(&how, &()).unwrap().1.vertices_replaced
         };
         let all = u64::from(SIDE * SIDE);
         assert_eq!([1.0, 8.0].map(|width| replaced(width, MeshSampling::Auto)), [0, all]);

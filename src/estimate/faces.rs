@@ -1,8 +1,8 @@
-//! Normals and radii from the faces around each point.
+//! Normals and radii from faces.
 
+use super::MARGIN;
 use super::draft::Draft;
 use super::reach::reach;
-use super::{Estimate, MARGIN};
 use crate::geometry::Surfels;
 use glam::{DVec3, Vec3};
 
@@ -23,29 +23,25 @@ struct Corner {
     angle: f64,
 }
 
-/// Sets missing normals to the mean normal of the triangles, weighted by their angles, and missing radii to those of discs that cover every
-/// triangle or its projection, unless the discs are to be ellipses.
-pub(super) fn fill(draft: &mut Draft, how: &Estimate) {
-    if draft.triangles.is_empty() || !draft.lacks_anything() {
-        return;
-    }
+/// Sets missing normals to the mean normal of the triangles, weighted by their angles.
+pub(super) fn fill_normals(draft: &mut Draft) {
     let corners = corners(&draft.surfels.positions, &draft.triangles);
-    let (surfels, estimated) = (&mut draft.surfels, &mut draft.estimated);
-    for (normal, corner) in surfels.normals.iter_mut().zip(&corners) {
+    for (normal, corner) in draft.surfels.normals.iter_mut().zip(&corners) {
         if *normal == Vec3::ZERO && corner.normal.length() > CANCELLED * corner.angle {
             *normal = corner.normal.normalize().as_vec3();
-            estimated.normals_from_faces += 1;
+            draft.estimated.normals_from_faces += 1;
         }
     }
-    if how.elliptical {
-        return;
-    }
-    let reaches = reaches(surfels, &draft.triangles);
-    for (radius, reach) in surfels.radii.iter_mut().zip(&reaches) {
+}
+
+/// Sets missing radii to those of discs that cover every triangle or its projection.
+pub(super) fn fill_radii(draft: &mut Draft) {
+    let reaches = reaches(&draft.surfels, &draft.triangles);
+    for (radius, reach) in draft.surfels.radii.iter_mut().zip(&reaches) {
         let reach = (MARGIN * reach) as f32;
         if *radius == 0.0 && reach > 0.0 {
             *radius = reach;
-            estimated.radii_from_faces += 1;
+            draft.estimated.radii_from_faces += 1;
         }
     }
 }

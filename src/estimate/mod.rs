@@ -90,7 +90,7 @@ pub struct Estimate {
     pub radius: Option<f32>,
     /// Factor of all radii.
     pub radius_scale: f32,
-    /// Whether discs with an estimated radius are ellipses, longer where points are sparser.
+    /// Whether discs with an estimated radius are ellipses, longer where points are sparser; those on the triangles of a mesh stay.
     pub elliptical: bool,
     /// Whether outlines are estimated, too: [`Surfels::curvatures`], and clips at the boundaries of open meshes.
     pub outlines: bool,
@@ -268,8 +268,7 @@ impl Cloud {
         }
         progress.check_cancelled()?;
         winding::turn(&mut draft);
-        faces::fill(&mut draft, how);
-        face_samples::replace(&mut draft, how);
+        fill_from_faces(&mut draft, how);
         progress.check_cancelled()?;
         let lacks_anything = draft.lacks_anything();
         let sites = (lacks_anything || how.outlines)
@@ -289,6 +288,21 @@ impl Cloud {
             estimated.clipped = creases::clip(&mut surfels, angle, how, progress)?;
         }
         Ok((surfels, estimated))
+    }
+}
+
+/// Fills normals and radii from the triangles, at the vertices or, by ellipses, on the triangles. Discs at the vertices that are to be
+/// elliptical keep no radius.
+fn fill_from_faces(draft: &mut Draft, how: &Estimate) {
+    if draft.triangles.is_empty() || !draft.lacks_anything() {
+        return;
+    }
+    faces::fill_normals(draft);
+    let before = how.elliptical.then(|| (draft.surfels.radii.clone(), draft.estimated));
+    faces::fill_radii(draft);
+    let is_sampled = face_samples::replace(draft, how);
+    if let Some(before) = before.filter(|_| !is_sampled) {
+        (draft.surfels.radii, draft.estimated) = before;
     }
 }
 

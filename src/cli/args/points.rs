@@ -45,7 +45,7 @@ pub struct Points {
     /// Number of nearest points that normals and radii are estimated from, 6 to 64
     #[arg(long, value_name = "K", default_value_t = 16, value_parser = clap::value_parser!(u8).range(6..=64), allow_hyphen_values = true)]
     pub neighbours: u8,
-    /// Estimates elliptical discs, longer along directions in which points are sparser
+    /// Estimates elliptical discs, longer along directions in which points are sparser; those on the triangles of a mesh stay
     #[arg(long)]
     pub elliptical: bool,
     /// Gives points on no surface, as in vegetation, an estimated normal, too; otherwise their discs face the eye
