@@ -197,8 +197,8 @@ impl<'a> Surveyor<'a> {
         plane
     }
 
-    /// The plane of the neighbours that surround a site in its scan, or, where those in space are a line, that are nearest, if they lie in one.
-    /// Otherwise the neighbours stay those in space.
+    /// The plane of the neighbours in the site's scan, if they lie in a plane and surround the site as the scanner sees it; if those in space
+    /// are a line, they need not surround it. Otherwise the neighbours stay those in space.
     fn look_in_scan(&mut self, site: u32, is_line: bool) -> Option<Plane> {
         self.in_space.clone_from(&self.near);
         let otherwise = if is_line { self.neighbours } else { 0 };

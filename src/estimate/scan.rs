@@ -68,10 +68,10 @@ impl Scan {
                 .map_init(Around::new, |around, index| self.surround(index as u32, count, around));
             of_sample.filter(|is| *is).count() as f64
         };
-        let [.., most] = WIDER.map(|factor| factor * neighbours);
+        let [few, more, most] = WIDER.map(|factor| factor * neighbours);
         let all = surrounded(most);
         let enough = |count: &usize| surrounded(*count) >= ENOUGH * all;
-        self.count = WIDER.map(|factor| factor * neighbours).into_iter().find(enough).unwrap_or(most);
+        self.count = [few, more].into_iter().find(enough).unwrap_or(most);
         self
     }
 
@@ -90,8 +90,8 @@ impl Scan {
         nearest(&self.tree, &self.points, index, count)
     }
 
-    /// Replaces `near` by the sites that surround point `index`, nearest first, or, if none do, by the `otherwise` nearest. Returns false, and
-    /// leaves it, if these are none.
+    /// Replaces `near` by the sites that surround point `index` as the scanner sees it, nearest first. If none do, it is replaced by the
+    /// `otherwise` nearest by direction; with an `otherwise` of 0 it stays, and false is returned.
     pub fn nearest(&self, index: u32, otherwise: usize, around: &mut Around, near: &mut Vec<u32>) -> bool {
         if !self.surround(index, self.count, around) {
             if otherwise == 0 {

@@ -69,9 +69,8 @@ impl Scans {
         self.of_site.get(site as usize).is_some_and(|scan| *scan != NONE)
     }
 
-    /// Replaces the sites that are nearest to `site` in space by those that surround it as the scanner sees it, nearest first, or, if none
-    /// do, by the `otherwise` nearest by direction. Returns false, and leaves them, without any, if some are of other scans, which fill the
-    /// gaps of this one, or if the site is in none.
+    /// Replaces `near`, the nearest sites in space, by neighbours in the scan of `site`: see [`Scan::nearest`]. Returns false, and leaves them, if
+    /// `site` is in no scan, or some of them are in another, which fills the gaps of this one.
     pub fn nearest(&self, site: u32, otherwise: usize, around: &mut Around, near: &mut Vec<u32>) -> bool {
         let Some(&number) = self.of_site.get(site as usize) else { return false };
         let is_alone = || near.iter().all(|other| self.of_site[*other as usize] == number);
