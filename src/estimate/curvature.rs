@@ -4,7 +4,7 @@ use super::sites::Sites;
 use crate::Progress;
 use crate::error::Result;
 use crate::geometry::{Curvature, Surfels, tangents};
-use glam::{DMat2, DMat3, DVec2, DVec3};
+use glam::{DMat2, DMat3, DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -14,7 +14,7 @@ const NEIGHBOURS: usize = 10;
 const SAME_SIDE: f64 = 0.0;
 /// Weight of flatness in the directions of no neighbour, relative to that of a neighbour.
 const FLATNESS: f64 = 1e-3;
-/// Least distance of the farthest neighbour along the longer axis of an ellipse, semi-axes.
+/// Least distance of the farthest neighbour along the longer axis of an ellipse, semi-axes, or distances of the farthest across it.
 const LEAST_REACH: f32 = 0.5;
 /// Number of surfels per task.
 const PIECE: usize = 1 << 12;
@@ -72,9 +72,12 @@ fn curvature_at(surfels: &Surfels, sites: &Sites, near: &[u32], i: usize) -> Cur
 /// Whether the neighbours of an ellipse go on along its longer axis, rather than being all of one line of a scan.
 fn reach_across(surfels: &Surfels, sites: &Sites, near: &[u32], i: usize) -> bool {
     let Some(ellipses) = &surfels.ellipses else { return true };
-    let at = sites.at(sites.of_point[i]);
-    let along = near.iter().map(|other| (sites.at(*other) - at).dot(ellipses[i].major).abs());
-    sites.unit * along.fold(0.0, f32::max) >= LEAST_REACH * surfels.radii[i]
+    let (at, major) = (sites.at(sites.of_point[i]), ellipses[i].major);
+    let farthest = |axis: Vec3| {
+        let distances = near.iter().map(|other| (sites.at(*other) - at).dot(axis).abs());
+        sites.unit * distances.fold(0.0, f32::max)
+    };
+    farthest(major) >= LEAST_REACH * surfels.radii[i].min(farthest(surfels.normals[i].cross(major)))
 }
 
 /// The shape operator S with the least squares of tᵀ S t − κ, of unit tangents t and curvatures κ in their directions.
@@ -92,7 +95,6 @@ fn fit(circles: impl Iterator<Item = (DVec2, f64)>) -> DMat2 {
 mod tests {
     use super::*;
     use crate::geometry::Ellipse;
-    use glam::Vec3;
 
     /// The curvatures of `count` points of a surface, given by the position and normal at parameters from 0 to 1.
     fn of(count: usize, surface: impl Fn(f32, f32) -> [Vec3; 2]) -> Vec<Curvature> {
@@ -176,6 +178,23 @@ mod tests {
         };
         assert!(of(10.0).iter().all(|k| *k == Curvature::default()));
         assert!(of(0.1).iter().any(|k| *k != Curvature::default()));
+    }
+
+    #[test]
+    fn neighbours_all_around_tell_curvatures_however_long_the_ellipse_is() {
+        // A cylinder along y, in whose dense points an ellipse on a long triangle of a mesh has its centre.
+        let normal = |i: u32| Vec3::new((i as f32 * 0.01).sin(), 0.0, (i as f32 * 0.01).cos());
+        let at = |i: u32| normal(i % 30) + Vec3::Y * (i / 30) as f32 * 0.01;
+        let surfels = Surfels {
+            positions: (0..900).map(at).collect(),
+            normals: (0..900).map(|i| normal(i % 30)).collect(),
+            radii: vec![1.0; 900],
+            ellipses: Some(vec![Ellipse { major: Vec3::Y, aspect: 0.1 }; 900]),
+            ..Surfels::default()
+        };
+        let sites = Sites::new(&surfels.positions, &()).unwrap();
+        let found = curvatures(&surfels, &sites, &()).unwrap();
+        assert!(found.iter().all(|curvature| curvature.largest() > 0.5));
     }
 
     #[test]
