@@ -35,7 +35,13 @@ layout(set = 0, binding = 8, std430) readonly buffer Ellipses { vec4 ellipses[];
 layout(set = 0, binding = 8, std430) readonly buffer EllipseWords { uint ellipse_words[]; };
 
 const uint FLOAT_NORMALS = 0, SNORM8_NORMALS = 1, SNORM16_NORMALS = 2, HALF_NORMALS = 3, OCTAHEDRAL_NORMALS = 4;
-const uint NO_NORMAL = 0x80008000u; // octahedral code of a billboard
+const uint NORMALS_WITH_CURVATURES = 5; // octahedral codes of 23 bits above the lower bits of curvatures
+// Octahedral codes of billboards.
+const uint NO_NORMAL = 0x80008000u, NO_COARSE_NORMAL = 0xffffffffu;
+const int COARSE_NORMAL = 1447, COARSE_VALUES = 2 * COARSE_NORMAL + 1; // largest coordinate of a code of 23 bits, and their number
+const uint CURVATURE_BITS = 9; // of curvatures beside normals; three more are those above the coordinates
+const int LEAST_CURVATURE = -9, CURVATURE_LINES = 12, CURVATURE_SHAPES = 1 + 8 * CURVATURE_LINES;
+const uint CURVATURE_ROOTS = 0x57351800u; // bytes: mantissas of the powers of 2¼
 
 DEFINE_COLOURS(stored_colour, STORED_COLOURS, colours, COLOUR_OFFSET, COLOUR_STRIDE)
 
@@ -44,7 +50,7 @@ vec4 lattice_surfel(uint i) {
     uvec4 lattice = lattices[i / CLUSTER_SIZE];
     if (lattice.w == 0u) return uintBitsToFloat(lattices[lattice.x + i % CLUSTER_SIZE]);
     uvec2 words = lattice_positions[i];
-    vec4 steps = vec4(words.x & 0xffffu, words.x >> 16, words.y & 0xffffu, unpackHalf2x16(words.y).y);
+    vec4 steps = vec4(words.x & 0x7fffu, words.x >> 16 & 0x7fffu, words.y & 0x7fffu, unpackHalf2x16(words.y).y);
     return vec4(uintBitsToFloat(lattice.xyz), 0.0) + uintBitsToFloat(lattice.w) * steps;
 }
 
@@ -69,15 +75,15 @@ vec3 stored_normal(uint i) {
         int code = int(normals[k]);
         return normals[k] == NO_NORMAL ? vec3(0.0) : octahedral_direction(ivec2(bitfieldExtract(code, 0, 16), code >> 16), 32767);
     }
+    if (NORMALS == NORMALS_WITH_CURVATURES) {
+        int pair = int(normals[k] >> CURVATURE_BITS);
+        ivec2 code = ivec2(pair % COARSE_VALUES, pair / COARSE_VALUES) - COARSE_NORMAL;
+        return normals[k] == NO_COARSE_NORMAL ? vec3(0.0) : octahedral_direction(code, COARSE_NORMAL);
+    }
     if (NORMALS == SNORM8_NORMALS) return unpackSnorm4x8(normals[k]).xyz;
     if (NORMALS == SNORM16_NORMALS) return vec3(unpackSnorm2x16(normals[k]), unpackSnorm2x16(normals[k + 1]).x);
     if (NORMALS == HALF_NORMALS) return vec3(unpackHalf2x16(normals[k]), unpackHalf2x16(normals[k + 1]).x);
     return uintBitsToFloat(uvec3(normals[k], normals[k + 1], normals[k + 2]));
-}
-
-// Curvature of src/geometry/curvature.rs, which follows the normal.
-uint curvature_of(uint i) {
-    return normals[NORMAL_OFFSET + NORMAL_STRIDE * i + (NORMALS == OCTAHEDRAL_NORMALS ? 1 : 3)];
 }
 
 // Normal curvature, 1 / unit, in the direction of a tangent: above 0 where the surface bends away from the normal (Euler's formula).
@@ -103,6 +109,27 @@ float radius_of(uint i) {
 
 bool is_two_sided(uint i) {
     return TWO_SIDED && stored_radius(i) < 0.0;
+}
+
+// Curvature of a disc with this radius, of a code that is not 0: one of 42 sizes, quarter powers of two from 2^LEAST_CURVATURE on relative to
+// the radius, by one of the shapes (src/geometry/quantized/curvatures.rs).
+uint decoded_curvature(int code, float radius) {
+    int size = (code - 1) / CURVATURE_SHAPES, shape = (code - 1) % CURVATURE_SHAPES;
+    int exponent = clamp(127 + LEAST_CURVATURE + size / 4 - (int(floatBitsToUint(radius) >> 23) - 127), 1, 254);
+    int root = int(CURVATURE_ROOTS >> 8 * (size % 4)) & 0xff;
+    int steps = (shape - 1) / CURVATURE_LINES, line = (shape - 1) % CURVATURE_LINES;
+    int ratio = shape == 0 ? 127 : max(95 - 32 * steps, -127), angle = shape == 0 ? 0 : 127 * line / 6 - 127;
+    return uint(exponent << 23 | root << 16 | (angle & 0xff) << 8 | ratio & 0xff);
+}
+
+// Curvature of surfel i's surface in the format of src/geometry/curvature.rs; 0 if it is unknown.
+uint curvature_of(uint i) {
+    uint k = NORMAL_OFFSET + NORMAL_STRIDE * i;
+    if (NORMALS != NORMALS_WITH_CURVATURES) return normals[k + 3];
+    uvec2 words = lattice_positions[i];
+    uint upper = words.x >> 15 & 1u | words.x >> 30 & 2u | words.y >> 13 & 4u;
+    int code = int(upper << CURVATURE_BITS | normals[k] & (1u << CURVATURE_BITS) - 1u);
+    return code == 0 ? 0u : decoded_curvature(code, radius_of(i));
 }
 
 // Direction of the major axis of surfel i's disc, a unit vector but for quantized surfels, and its aspect.

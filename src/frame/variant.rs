@@ -120,7 +120,7 @@ pub struct SceneVariant {
     pub frame: Variant,
     /// Surfels are ellipses.
     pub ellipses: bool,
-    /// Normals are followed by curvatures, which the frame uses.
+    /// Curvatures are stored with the normals, and the frame uses them.
     pub curvatures: bool,
     /// Some discs have clip lines.
     pub clips: bool,

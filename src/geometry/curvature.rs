@@ -35,6 +35,12 @@ impl Curvature {
         Self(largest | code(angle / FRAC_PI_2) << 8 | code(ratio))
     }
 
+    /// The upper half of a float, and both bytes.
+    pub(crate) fn from_parts(largest: u16, ratio: i8, angle: i8) -> Self {
+        let [ratio, angle] = [ratio, angle].map(|byte| u32::from(byte.cast_unsigned()));
+        Self(u32::from(largest) << 16 | angle << 8 | ratio)
+    }
+
     /// The same curvature at a normal `to` that is nearly `from`, both unit vectors: [`tangents`] of both may differ.
     pub(crate) fn turned(self, from: DVec3, to: DVec3) -> Self {
         let ([x, y], direction) = (tangents(from), self.direction());

@@ -58,6 +58,15 @@ pub enum NormalStream {
     Half = 3,
     /// Octahedral codes of 16 bits per coordinate, of quantized surfels.
     Octahedral = 4,
+    /// Octahedral codes of 23 bits with the lower bits of curvatures, of quantized surfels.
+    OctahedralWithCurvature = 5,
+}
+
+impl NormalStream {
+    /// Those of quantized surfels.
+    pub(super) fn octahedral(with_curvatures: bool) -> Self {
+        if with_curvatures { Self::OctahedralWithCurvature } else { Self::Octahedral }
+    }
 }
 
 /// Layout of all streams of a chunk.
@@ -92,13 +101,12 @@ impl SurfelLayout {
     }
 
     /// The same with quantized surfels.
-    pub(super) fn quantized(self) -> Self {
+    pub(super) fn quantized(self, with_curvatures: bool) -> Self {
         let every = |stride| Words { offset: 0, stride };
-        let normals = every(self.normals.stride - 2);
         Self {
             positions: every(2),
-            normals,
-            normal_stream: NormalStream::Octahedral,
+            normals: every(1),
+            normal_stream: NormalStream::octahedral(with_curvatures),
             ellipses: every(1),
             ..self
         }
@@ -106,7 +114,7 @@ impl SurfelLayout {
 
     /// Whether the surfels are quantized.
     pub fn is_quantized(&self) -> bool {
-        self.normal_stream == NormalStream::Octahedral
+        matches!(self.normal_stream, NormalStream::Octahedral | NormalStream::OctahedralWithCurvature)
     }
 
     /// Adds the layout to specialization constants.

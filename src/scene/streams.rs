@@ -9,7 +9,7 @@ use super::surfel_streams::{CODE, ELLIPSE, LATTICE_POSITION, SCALAR, VECTOR};
 pub struct Streams {
     /// Discs are ellipses.
     pub ellipses: bool,
-    /// Normals are followed by the curvature of the surface.
+    /// The curvature of the surface is stored with the normals.
     pub curvatures: bool,
     /// Some surfels are two-sided.
     pub two_sided: bool,
@@ -63,11 +63,11 @@ impl Streams {
 
     /// The same, but quantized.
     pub fn quantized(self) -> Self {
-        Self { layout: self.layout.quantized(), ..self }
+        Self { layout: self.layout.quantized(self.curvatures), ..self }
     }
 
-    /// Streams of uploaded surfels by name, with bytes per surfel; curvatures lie beside the normals, radii of quantized surfels beside the
-    /// positions. A clip takes 32 more, corner weights 16, the lattice of 64 quantized surfels 16, and of those that stay exact 16 each.
+    /// Streams of uploaded surfels by name, with bytes per surfel; curvatures lie beside the normals, of quantized surfels in the
+    /// same bytes, and their radii beside the positions. A clip takes 32 more, corner weights 16, the lattice of 64 quantized surfels 16, and of those that stay exact 16 each.
     pub fn per_surfel(&self) -> Vec<(&'static str, u64)> {
         let (quantized, given) = match self.layout.is_quantized() {
             true => (true, vec![("positions", LATTICE_POSITION), ("normals", CODE)]),
@@ -75,7 +75,7 @@ impl Streams {
         };
         let ellipse = if quantized { CODE } else { ELLIPSE };
         let optional = [
-            ("curvatures", if self.curvatures { SCALAR } else { 0 }),
+            ("curvatures", if self.curvatures && !quantized { SCALAR } else { 0 }),
             ("colours", self.colours.bytes()),
             ("ellipses", if self.ellipses { ellipse } else { 0 }),
             ("clips", if self.clips { 4 } else { 0 }),

@@ -18,7 +18,7 @@ pub(super) const SCALAR: u64 = 4;
 pub(super) const ELLIPSE: u64 = size_of::<Ellipse>() as u64;
 /// Bytes of a quantized position with its radius.
 pub(super) const LATTICE_POSITION: u64 = 8;
-/// Bytes of a quantized normal, and of a quantized ellipse.
+/// Bytes of a quantized normal, with or without curvature, and of a quantized ellipse.
 pub(super) const CODE: u64 = 4;
 
 /// Positions, normals, radii and shapes.
@@ -26,7 +26,7 @@ pub(super) struct SurfelStreams {
     pub positions: Stream,
     pub normals: Stream,
     pub normal_stream: NormalStream,
-    /// Whether a normal is followed by the curvature of the surface.
+    /// Whether the curvature of the surface is stored with a normal.
     pub curvatures: bool,
     pub radii: Radii,
     pub ellipses: Option<Stream>,
@@ -43,17 +43,20 @@ pub(super) enum Radii {
 impl SurfelStreams {
     /// Uploads surfels with these marked radii as floats.
     pub fn floats(uploads: &Uploads<'_>, surfels: &Surfels, radii: &[f32]) -> Result<Self> {
-        let bent = surfels.curvatures.as_ref().map(|all| bent_normals(&surfels.normals, Some(all)));
-        let normals = match &bent {
+        let curvatures = surfels.curvatures.as_ref();
+        let normals = match curvatures {
             None => stream(uploads, "normals", &surfels.normals, VECTOR)?,
-            Some(bent) => stream(uploads, "normals", bent, VECTOR + SCALAR)?,
+            Some(curvatures) => {
+                let values = normals_with_curvatures(&surfels.normals, Some(curvatures));
+                stream(uploads, "normals", &values, VECTOR + SCALAR)?
+            }
         };
         let ellipses = surfels.ellipses.as_ref();
         Ok(Self {
             positions: stream(uploads, "positions", &surfels.positions, VECTOR)?,
             normals,
             normal_stream: NormalStream::Float,
-            curvatures: bent.is_some(),
+            curvatures: curvatures.is_some(),
             radii: Radii::Floats(stream(uploads, "radii", radii, SCALAR)?),
             ellipses: ellipses.map(|all| stream(uploads, "ellipses", all, ELLIPSE)).transpose()?,
         })
@@ -66,20 +69,12 @@ impl SurfelStreams {
         exact: (&[Vec3], &[f32]),
         chunks: &[Range<u64>],
     ) -> Result<Self> {
-        let bent = codes.curvatures.as_ref().map(|all| {
-            let each = codes.normals.iter().zip(all);
-            each.map(|(normal, curvature)| [*normal, bytemuck::cast(*curvature)]).collect::<Vec<_>>()
-        });
-        let normals = match &bent {
-            None => stream(uploads, "normals", &codes.normals, CODE)?,
-            Some(bent) => stream(uploads, "normals", bent, CODE + SCALAR)?,
-        };
         let ellipses = codes.ellipses.as_ref();
         Ok(Self {
             positions: stream(uploads, "positions", &codes.positions, LATTICE_POSITION)?,
-            normals,
-            normal_stream: NormalStream::Octahedral,
-            curvatures: bent.is_some(),
+            normals: stream(uploads, "normals", &codes.normals.words, CODE)?,
+            normal_stream: NormalStream::octahedral(codes.normals.with_curvatures),
+            curvatures: codes.normals.with_curvatures,
             radii: Radii::Lattices(LatticeStream::new(uploads, &codes.lattices, exact, chunks)?),
             ellipses: ellipses.map(|all| stream(uploads, "ellipses", all, CODE)).transpose()?,
         })
@@ -139,13 +134,17 @@ fn stream<T: bytemuck::NoUninit>(
 /// A normal, and the curvature of the surface.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
-pub(super) struct BentNormal {
+pub(super) struct NormalWithCurvature {
     normal: Vec3,
     curvature: Curvature,
 }
 
 /// Normals with curvatures, or with unknown ones.
-pub(super) fn bent_normals(normals: &[Vec3], curvatures: Option<&[Curvature]>) -> Vec<BentNormal> {
+pub(super) fn normals_with_curvatures(
+    normals: &[Vec3],
+    curvatures: Option<&[Curvature]>,
+) -> Vec<NormalWithCurvature> {
     let curvature = |i: usize| curvatures.map(|curvatures| curvatures[i]).unwrap_or_default();
-    normals.iter().zip(0..).map(|(&normal, i)| BentNormal { normal, curvature: curvature(i) }).collect()
+    let with = |(&normal, i)| NormalWithCurvature { normal, curvature: curvature(i) };
+    normals.iter().zip(0..).map(with).collect()
 }

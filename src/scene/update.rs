@@ -2,7 +2,7 @@
 
 use super::clusters::ClusterChange;
 use super::live::check_bounds;
-use super::surfel_streams::bent_normals;
+use super::surfel_streams::normals_with_curvatures;
 use super::{ColourStream, Scene, Stream, largest};
 use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Colours, Curvature, Ellipse, Surfels, is_unit};
@@ -75,8 +75,8 @@ impl Scene {
         let clusters = clusters.transpose()?.flatten();
         write(uploads, Some(&self.surfels.positions), first, changes.positions)?;
         if self.surfels.curvatures {
-            let bent = changes.normals.map(|normals| bent_normals(normals, changes.curvatures));
-            write(uploads, Some(&self.surfels.normals), first, bent.as_deref())?;
+            let values = changes.normals.map(|normals| normals_with_curvatures(normals, changes.curvatures));
+            write(uploads, Some(&self.surfels.normals), first, values.as_deref())?;
         } else {
             write(uploads, Some(&self.surfels.normals), first, changes.normals)?;
         }

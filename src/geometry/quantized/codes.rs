@@ -11,6 +11,8 @@ pub struct Octahedral {
 
 /// Codes of normals, 16 bits per coordinate.
 pub const NORMAL: Octahedral = Octahedral { most: 32_767 };
+/// Codes of normals with curvatures, 23 bits a pair.
+pub const COARSE_NORMAL: Octahedral = Octahedral { most: 1447 };
 /// Codes of major axes, 11 bits per coordinate.
 pub const AXIS: Octahedral = Octahedral { most: 1023 };
 
@@ -25,7 +27,27 @@ impl Octahedral {
     /// The direction of such a word, of any length.
     pub fn direction(self, word: u32, bits: u32) -> Vec3 {
         let coordinate = |first: u32| (word << (32 - bits - first)).cast_signed() >> (32 - bits);
-        let [x, y] = [coordinate(0), coordinate(bits)];
+        self.direction_at([coordinate(0), coordinate(bits)])
+    }
+
+    /// Both coordinates of a direction as one number: the second times the number of values of one, and the first.
+    pub fn pair(self, direction: Vec3) -> u32 {
+        let [x, y] = self.code(direction);
+        ((y + self.most) * self.values() + x + self.most).cast_unsigned()
+    }
+
+    /// The direction of such a number, of any length.
+    pub fn direction_of_pair(self, pair: u32) -> Vec3 {
+        let pair = pair.cast_signed();
+        self.direction_at([pair % self.values(), pair / self.values()].map(|value| value - self.most))
+    }
+
+    /// Values of a coordinate.
+    fn values(self) -> i32 {
+        2 * self.most + 1
+    }
+
+    fn direction_at(self, [x, y]: [i32; 2]) -> Vec3 {
         let z = self.most - x.abs() - y.abs();
         let sign = |v: i32| if v >= 0 { 1 } else { -1 };
         let [x, y] =

@@ -14,7 +14,9 @@ pub(crate) struct Lattice {
 }
 
 /// Most steps along a side.
-const SIDE: f32 = 65_534.0;
+const SIDE: f32 = 32_766.0;
+/// The bits of a coordinate; one more is left.
+pub const COORDINATE: u16 = 0x7fff;
 /// Largest distance of a position from the exact one, in radii.
 const NEAR: f32 = 1.0 / 128.0;
 /// Radii are at most so many steps, as half floats end at 65,504.
@@ -54,9 +56,9 @@ impl Lattice {
         Some([x, y, z, half(radius / self.step)?])
     }
 
-    /// Position and radius of a code: products and sums are exact.
+    /// Position and radius of a code, whatever the other bits of the coordinates are: products and sums are exact.
     pub fn surfel(&self, [x, y, z, radius]: [u16; 4]) -> (Vec3, f32) {
-        let steps = Vec3::from([x, y, z].map(f32::from));
+        let steps = Vec3::from([x, y, z].map(|step| f32::from(step & COORDINATE)));
         (self.low + steps * self.step, half_value(radius) * self.step)
     }
 }

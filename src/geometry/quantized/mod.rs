@@ -1,24 +1,28 @@
-//! Quantized surfels: 16 bytes each with 8-bit colours, in the place of 32, in the layout of `shaders-glsl/lib/surfels.glsl`.
+//! Quantized surfels: 16 bytes each with 8-bit colours and curvatures, in the place of 36, in the layout of `shaders-glsl/lib/surfels.glsl`.
 //!
-//! 64 consecutive surfels, a cluster, share a [`Lattice`]: their coordinates are 16-bit integers, their radii half floats in its steps.
-//! Clusters whose surfels are too far apart for that stay exact. Normals and major axes are octahedral codes ([`codes`]).
+//! 64 consecutive surfels, a cluster, share a [`Lattice`]: their coordinates are 15-bit integers, their radii half floats in its steps.
+//! Clusters whose surfels are too far apart for that stay exact. Normals and major axes are octahedral codes ([`codes`]); where the scene has
+//! curvatures, their codes ([`curvatures`]) are in the bits that coordinates and coarser normals leave.
 
 mod codes;
+mod curvatures;
 mod lattice;
+mod normals;
 
 use super::{Clips, Curvature, Ellipse, Surfels};
-use codes::{AXIS, NORMAL};
+use codes::AXIS;
 use glam::Vec3;
 pub(crate) use lattice::Lattice;
+pub(crate) use normals::NormalCodes;
 use rayon::prelude::*;
 
 /// Format of the surfels of a scene on the device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SurfelFormat {
-    /// 32-bit floats: 28 bytes a surfel, and 16 for an ellipse.
+    /// 32-bit floats: 28 bytes a surfel, 4 for a curvature, and 16 for an ellipse.
     #[default]
     Float,
-    /// Integers and half floats: 12 bytes a surfel, and 4 for an ellipse. See [`Surfels::quantized`] for the errors, and for the surfels that
+    /// Integers and half floats: 12 bytes a surfel, with or without a curvature, and 4 for an ellipse. See [`Surfels::quantized`] for the errors, and for the surfels that
     /// stay floats.
     Quantized,
 }
@@ -36,8 +40,6 @@ pub(crate) const CLUSTER: usize = 64;
 /// Largest ratio of a radius to the exact one, rounded up.
 pub(crate) const RADIUS_ROUNDING: f32 = 1.0005;
 
-/// Code of the normal of a billboard: NO_NORMAL of `lib/surfels.glsl`.
-const NO_NORMAL: u32 = 0x8000_8000;
 /// Largest code of an aspect.
 const ASPECTS: f32 = 1023.0;
 
@@ -45,10 +47,9 @@ const ASPECTS: f32 = 1023.0;
 pub(crate) struct Quantized {
     /// Cluster by cluster; `None` for exact ones.
     pub lattices: Vec<Option<Lattice>>,
-    /// Coordinates in steps of the lattice, and the radius.
+    /// Coordinates in steps of the lattice, below the upper bits of the curvature, and the radius.
     pub positions: Vec<[u16; 4]>,
-    pub normals: Vec<u32>,
-    pub curvatures: Option<Vec<Curvature>>,
+    pub normals: NormalCodes,
     pub ellipses: Option<Vec<u32>>,
     /// Clip lines in the tangent planes of the stored normals.
     pub clips: Option<Clips>,
@@ -74,20 +75,27 @@ impl Quantized {
             let lattice = lattices[i / CLUSTER].filter(|_| radii[i] != 0.0)?;
             lattice.code(surfels.positions[i], radii[i])
         };
-        let normals: Vec<_> = surfels.normals.par_iter().map(|normal| normal_code(*normal)).collect();
-        let turned = |(i, curvature): (usize, &Curvature)| {
-            curvature.turned(surfels.normals[i].as_dvec3(), normal_of(normals[i]).as_dvec3())
+        let mut positions: Vec<_> =
+            (0..surfels.len()).into_par_iter().map(|i| position(i).unwrap_or_default()).collect();
+        let radius = |i: usize, position| match &lattices[i / CLUSTER] {
+            Some(lattice) => lattice.surfel(position).1,
+            None => radii[i],
         };
+        let curvatures = surfels.curvatures.as_ref();
+        let word = |(i, position): (usize, &mut [u16; 4])| {
+            let curvature = curvatures.map(|curvatures| (curvatures[i], radius(i, *position)));
+            let (word, bits) = NormalCodes::code(surfels.normals[i], curvature);
+            position.iter_mut().zip(bits).for_each(|(coordinate, bit)| *coordinate |= bit << 15);
+            word
+        };
+        let words = positions.par_iter_mut().enumerate().map(word).collect();
+        let normals = NormalCodes { words, with_curvatures: curvatures.is_some() };
         let shape = |ellipse: &Ellipse| {
             let aspect = (ellipse.aspect * ASPECTS).round().clamp(1.0, ASPECTS) as u32;
             AXIS.word(ellipse.major, 11) | aspect << 22
         };
         Some(Self {
-            positions: (0..surfels.len()).into_par_iter().map(|i| position(i).unwrap_or_default()).collect(),
-            curvatures: surfels
-                .curvatures
-                .as_ref()
-                .map(|curvatures| curvatures.par_iter().enumerate().map(|(i, c)| turned((i, c))).collect()),
+            positions,
             ellipses: surfels.ellipses.as_ref().map(|ellipses| ellipses.par_iter().map(shape).collect()),
             clips: surfels.clips.as_ref().and_then(|clips| clips_within(clips, &normals)),
             normals,
@@ -95,9 +103,15 @@ impl Quantized {
         })
     }
 
+    /// Curvature at surfel `i`, whose stored radius is this.
+    fn curvature(&self, i: usize, radius: f32) -> Curvature {
+        let [x, y, z, _] = self.positions[i];
+        self.normals.curvature(i, [x, y, z].map(|coordinate| coordinate >> 15), radius)
+    }
+
     /// Surfel `i` as the device decodes it; `exact` is its position and radius in an exact cluster.
     pub fn stored(&self, i: usize, (position, radius): (Vec3, f32)) -> Stored {
-        let normal = normal_of(self.normals[i]);
+        let normal = self.normals.normal(i);
         match &self.lattices[i / CLUSTER] {
             Some(lattice) => {
                 let (position, radius) = lattice.surfel(self.positions[i]);
@@ -109,17 +123,8 @@ impl Quantized {
 }
 
 /// Clips in the tangent planes of these normals; a clip without a line is none.
-fn clips_within(clips: &Clips, normals: &[u32]) -> Option<Clips> {
-    Clips::collect(normals.iter().zip(0..).map(|(normal, i)| clips.get(i)?.within(normal_of(*normal))))
-}
-
-fn normal_code(normal: Vec3) -> u32 {
-    if normal == Vec3::ZERO { NO_NORMAL } else { NORMAL.word(normal, 16) }
-}
-
-/// Unit vector, or 0.
-fn normal_of(code: u32) -> Vec3 {
-    if code == NO_NORMAL { Vec3::ZERO } else { NORMAL.direction(code, 16).normalize() }
+fn clips_within(clips: &Clips, normals: &NormalCodes) -> Option<Clips> {
+    Clips::collect((0..normals.words.len()).map(|i| clips.get(i)?.within(normals.normal(i))))
 }
 
 impl Surfels {
@@ -129,8 +134,8 @@ impl Surfels {
     }
 
     /// The surfels as scenes of [`SurfelFormat::Quantized`] store them. Positions move by at most 1/128 of their radii and stay in their
-    /// cells of every level of detail; normals turn by at most 0.005°, major axes by 0.12°; radii change by at most 1/2048 of themselves,
-    /// aspects by 1/2046 or up to 1/1023.
+    /// cells of every level of detail; normals turn by at most 0.005°, with curvatures by 0.085°, and major axes by 0.12°; radii change by at
+    /// most 1/2048 of themselves, aspects by 1/2046 or up to 1/1023, curvatures in any direction by 0.3 of the larger principal curvature.
     ///
     /// What stays as it is: invalid surfels; positions and radii of 64 consecutive surfels that are too far apart for such small errors; and all
     /// surfels if that are more than half, as in arbitrary order, or with normalization weights.
@@ -141,8 +146,8 @@ impl Surfels {
         for i in (0..self.len()).filter(|i| radii[*i] != 0.0) {
             (self.positions[i], self.radii[i], self.normals[i]) =
                 codes.stored(i, (self.positions[i], radii[i]));
-            if let (Some(own), Some(curvatures)) = (&mut self.curvatures, &codes.curvatures) {
-                own[i] = curvatures[i];
+            if let Some(curvatures) = &mut self.curvatures {
+                curvatures[i] = codes.curvature(i, self.radii[i]);
             }
             if let (Some(own), Some(ellipses), false) =
                 (&mut self.ellipses, &codes.ellipses, self.normals[i] == Vec3::ZERO)

@@ -1,7 +1,7 @@
-use super::codes::{half, half_value};
+use super::codes::{COARSE_NORMAL, NORMAL, half, half_value};
 use super::*;
-use crate::geometry::{Clip, ClipLine, Clips, Levels, Weights, tangents};
-use glam::{DVec2, DVec3, Vec3};
+use crate::geometry::{Clip, ClipLine, Clips, Curvature, Levels, Weights, tangents};
+use glam::{DMat2, DVec2, DVec3, Vec3};
 
 /// Points of a unit sphere at `origin`, along a spiral, so that consecutive ones are close together.
 fn sphere(count: usize, origin: Vec3) -> Surfels {
@@ -54,6 +54,76 @@ fn errors_are_as_documented() {
     assert_eq!(far.clone().quantized(), far);
 }
 
+/// The curvature with these principal curvatures, the first in the direction of `angle`.
+fn curvature(first: f64, second: f64, angle: f64) -> Curvature {
+    let axes = DMat2::from_angle(angle);
+    Curvature::of_shape_operator(axes * DMat2::from_diagonal(DVec2::new(first, second)) * axes.transpose())
+}
+
+/// Largest difference of two curvatures in any direction of the surface, relative to the larger principal curvature of the second.
+fn difference([a, b]: [Curvature; 2], [from, to]: [Vec3; 2]) -> f64 {
+    let tangent = |axes: [DVec3; 2], i: i32| {
+        let along = DVec2::from_angle(f64::from(i) * 0.05);
+        axes[0] * along.x + axes[1] * along.y
+    };
+    let along = |curvature: Curvature, normal: Vec3, direction: DVec3| {
+        let axes = tangents(normal.as_dvec3()).map(|axis| axis.dot(direction));
+        curvature.along(DVec2::from(axes).normalize())
+    };
+    let at = |i: i32| tangent(tangents(to.as_dvec3()), i);
+    let differences = (0..63).map(|i| (along(a, from, at(i)) - along(b, to, at(i))).abs());
+    differences.fold(0.0, f64::max) / b.largest()
+}
+
+#[test]
+fn normals_with_curvatures_are_coarser() {
+    let mut exact = sphere(20_000, Vec3::ZERO);
+    for (scale, ratio) in [(0.01, 1.0), (0.1, 0.7), (0.7, 0.3), (1.3, 0.0), (0.3, -0.4), (0.05, -1.0)] {
+        let each = |radius: &f32, i: u32| {
+            let largest = scale / f64::from(*radius);
+            curvature(largest, ratio * largest, f64::from(i))
+        };
+        let curvatures: Vec<_> = exact.radii.iter().zip(0..).map(|(radius, i)| each(radius, i)).collect();
+        exact.curvatures = Some(curvatures.clone());
+        let found = exact.clone().quantized();
+        let mut most: f64 = 0.0;
+        for (i, other) in found.curvatures.as_ref().unwrap().iter().enumerate() {
+            let normals = [found.normals[i], exact.normals[i]];
+            assert!(degrees(normals[0], normals[1]) < 0.085 && normals[0].dot(normals[1]) > 0.0);
+            most = most.max(difference([*other, curvatures[i]], normals));
+        }
+        let again = found.clone().quantized();
+        assert_eq!(
+            (&again.normals, &again.curvatures),
+            (&found.normals, &found.curvatures),
+            "{scale} {ratio}"
+        );
+        println!("ratio {ratio}: curvatures change by {most} at most");
+        assert!(most < 0.3, "{ratio}: {most}");
+    }
+}
+
+#[test]
+fn codes_of_curvatures_at_any_scale() {
+    for radius in [2e-38_f32, 1e-20, 0.37, 1.0, 1e14] {
+        for size in [0.008, 0.02, 0.5, 2.3] {
+            let exact = curvature(size / f64::from(radius), 0.0, 0.4);
+            let found = curvatures::curvature(curvatures::code(exact, radius), radius);
+            let ratio = found.largest() / exact.largest();
+            assert!(
+                (0.91..1.1).contains(&ratio) || exact == Curvature::default(),
+                "{radius} {size}: {ratio}"
+            );
+        }
+        let flat = curvature(1e-4 / f64::from(radius), 0.0, 0.4);
+        assert_eq!(curvatures::code(flat, radius), 0);
+        let steep = curvature(100.0 / f64::from(radius), 0.0, 0.4);
+        assert!(curvatures::code(steep, radius) < curvatures::CODES);
+    }
+    assert_eq!(curvatures::code(Curvature::default(), 1.0), 0);
+    assert_eq!(curvatures::curvature(0, 1.0), Curvature::default());
+}
+
 #[test]
 fn positions_stay_in_their_cells() {
     let exact = sphere(20_000, Vec3::ZERO);
@@ -102,11 +172,14 @@ fn billboards_and_invalid_surfels() {
     exact.positions[5] = Vec3::NAN;
     exact.normals[7] = Vec3::NAN;
     exact.radii[9] = -1.0;
-    let found = exact.clone().quantized();
-    assert!(found.is_billboard(3) && found.positions[3] != exact.positions[3]);
-    assert_eq!(found.ellipses.as_ref().unwrap()[3], exact.ellipses.as_ref().unwrap()[3]);
-    assert_eq!(found.count_invalid(), 3);
-    assert!(found.positions[5].is_nan() && found.normals[7].is_nan() && found.radii[9] == -1.0);
+    for curvatures in [None, Some(vec![curvature(1.0, 0.5, 0.0); 128])] {
+        exact.curvatures = curvatures;
+        let found = exact.clone().quantized();
+        assert!(found.is_billboard(3) && found.positions[3] != exact.positions[3]);
+        assert_eq!(found.ellipses.as_ref().unwrap()[3], exact.ellipses.as_ref().unwrap()[3]);
+        assert_eq!(found.count_invalid(), 3);
+        assert!(found.positions[5].is_nan() && found.normals[7].is_nan() && found.radii[9] == -1.0);
+    }
 }
 
 #[test]
@@ -151,10 +224,18 @@ fn octahedral_codes_of_all_directions() {
             assert!(degrees(code.direction(word, bits), direction) < most, "{direction}");
             assert!(code.direction(word, bits).dot(direction) > 0.0, "{direction}");
             assert!(bits == 16 || word >> 22 == 0);
-            assert!(bits == 11 || word != NO_NORMAL);
+        }
+        let pair = COARSE_NORMAL.pair(direction);
+        let found = COARSE_NORMAL.direction_of_pair(pair);
+        assert!(degrees(found, direction) < 0.085 && found.dot(direction) > 0.0, "{direction}");
+        assert!(pair < (1 << (32 - normals::BITS)) - 1);
+        for curvature in [None, Some((Curvature::default(), 1.0))] {
+            let words = [direction, Vec3::ZERO].map(|normal| NormalCodes::code(normal, curvature).0);
+            assert_ne!(words[0], words[1], "{direction}");
         }
     }
     assert_eq!(NORMAL.word(Vec3::NAN, 16), 0);
+    assert!(COARSE_NORMAL.direction_of_pair(COARSE_NORMAL.pair(Vec3::NAN)).is_finite());
 }
 
 #[test]
