@@ -45,6 +45,7 @@ mod sniff;
 mod source;
 mod splat;
 mod spz;
+mod stl;
 mod survey;
 mod table;
 mod text;

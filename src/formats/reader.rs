@@ -5,7 +5,7 @@ use super::declared::{Element, Encoding};
 use super::filter::Filter;
 use super::report::Report;
 use super::source::{Parsed, Source};
-use super::{obj, ply, ptx, sniff, splat, spz, text};
+use super::{obj, ply, ptx, sniff, splat, spz, stl, text};
 use crate::Progress;
 use crate::error::{Cause, Error, Result};
 use crate::geometry::{Cloud, MipMap};
@@ -52,6 +52,7 @@ static READERS: &[&dyn Reader] = &[
     &obj::Obj,
     &splat::Splat,
     &spz::Spz,
+    &stl::Stl,
     // Before text, of which it is a kind.
     &ptx::Ptx,
     &text::Text,
@@ -225,6 +226,8 @@ mod tests {
         assert_eq!(chosen("a.txt", b"v 0 1 2\n"), Ok("OBJ"));
         assert_eq!(chosen("a.splat", &[0; 32]), Ok("SPLAT"));
         assert_eq!(chosen("a.xyz", b"1\n1\n0 0 0\n1 0 0\n"), Ok("PTX"));
-        assert!(chosen("a.stl", b"solid\n").is_err_and(|cause| cause.to_string().contains("STL")));
+        assert_eq!(chosen("a.txt", b"solid a\n facet normal 0 0 1\n"), Ok("STL"));
+        assert_eq!(chosen("a.stl", &[0; 90]), Ok("STL"));
+        assert!(chosen("a.off", b"OFF\n").is_err_and(|cause| cause.to_string().contains("OFF")));
     }
 }

@@ -16,7 +16,6 @@ const KNOWN: &[(&[u8], &str)] = &[
     (b"# .PCD", "a PCD point cloud: build with the feature `pcd`, or convert it to PLY"),
     (b"glTF", "a binary glTF model: build with the feature `gltf`, or convert it to PLY"),
     (b"DRACO", "a Draco file: convert it to PLY"),
-    (b"solid", "an STL mesh: convert it to PLY with normals and radii"),
     (b"OFF", "an OFF mesh: convert it to PLY with normals and radii"),
     (b"\x89PNG", "a PNG picture"),
     (b"\xff\xd8\xff", "a JPEG picture"),
@@ -33,28 +32,33 @@ const EXTENSIONS: &[(&str, &str)] = &[
     ("sog", "3D Gaussians (.sog): convert them to PLY"),
 ];
 
+/// What a file with this beginning is, and the remedy.
+pub(super) fn known(beginning: &[u8]) -> Option<&'static str> {
+    KNOWN.iter().find(|(first, _)| beginning.starts_with(first)).map(|(_, what)| *what)
+}
+
 /// The error for a file that no reader knows: names its actual type if its beginning or extension tells.
 pub(super) fn name(file: &str, bytes: &[u8], size: u64) -> String {
     let extension = file.rsplit_once('.').map(|(_, extension)| extension.to_ascii_lowercase());
-    let known = EXTENSIONS.iter().find(|(known, _)| extension.as_deref() == Some(known));
-    if let Some((_, what)) = known.filter(|_| !bytes.is_empty()) {
+    let named = EXTENSIONS.iter().find(|(named, _)| extension.as_deref() == Some(named));
+    if let Some((_, what)) = named.filter(|_| !bytes.is_empty()) {
         return format!("not a point cloud that can be read, but {what}");
     }
     if is_binary_stl(bytes, size) {
-        return "not a point cloud that can be read, but a binary STL mesh: convert it to PLY with normals and radii".into();
+        return "not a point cloud that can be read, but a binary STL mesh: name it *.stl".into();
     }
     let beginning = bytes.trim_ascii_start();
     if beginning.is_empty() {
         return "the file is empty: fetch or write it again".into();
     }
-    if let Some((_, what)) = KNOWN.iter().find(|(first, _)| beginning.starts_with(first)) {
+    if let Some(what) = known(beginning) {
         return format!("not a point cloud that can be read, but {what}");
     }
     let line = beginning.split(|byte| matches!(byte, b'\n' | b'\r')).next().unwrap_or_default();
     match text(beginning) {
         Some(what) => format!("not a point cloud that can be read, but {what}"),
         None => format!(
-            "not a point cloud that can be read: it begins with {}; give a PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, SPLAT, SPZ or text file",
+            "not a point cloud that can be read: it begins with {}; give a PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, STL, SPLAT, SPZ or text file",
             quoted(line)
         ),
     }
@@ -85,7 +89,10 @@ mod tests {
     #[test]
     fn files_without_a_signature_are_identified_by_length_or_name() {
         let stl = [&[0; 80][..], &2u32.to_le_bytes(), &[0; 100]].concat();
-        assert!(name("a.ply", &stl, 184).contains("binary STL") && !name("a.ply", &stl, 183).contains("STL"));
+        assert!(
+            name("a.ply", &stl, 184).contains("binary STL")
+                && !name("a.ply", &stl, 183).contains("binary STL")
+        );
         for (file, what) in [("a.ksplat", ".ksplat"), ("b.SOG", ".sog")] {
             let cause = name(file, b"\x1f\x8b\x08\0", 4);
             assert!(cause.contains("3D Gaussians") && cause.contains(what), "{cause}");

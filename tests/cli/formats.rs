@@ -44,6 +44,10 @@ fn square() -> String {
     document.to_string()
 }
 
+/// The same square as STL text.
+const SQUARE: &str = "solid\nfacet normal 0 0 1\nouter loop\nvertex -1 -1 0\nvertex 1 -1 0\nvertex 1 1 0\nendloop\nendfacet\n\
+    facet normal 0 0 1\nouter loop\nvertex -1 -1 0\nvertex 1 1 0\nvertex -1 1 0\nendloop\nendfacet\nendsolid\n";
+
 /// A Gaussian of SPLAT in the plane z = 0.
 fn gaussian(x: f32, y: f32, opacity: u8) -> Vec<u8> {
     let floats = [x, y, 0.0, 0.1, 0.1, 0.001].into_iter().flat_map(f32::to_le_bytes);
@@ -59,7 +63,7 @@ fn scans_models_and_gaussians_become_pictures() {
         "a.obj",
         plane(|_, _| "1 0.5 0".into()).lines().map(|row| format!("v {row}\n")).collect::<String>(),
     );
-    program.write("a.gltf", square());
+    program.write("a.gltf", square()).write("a.stl", SQUARE);
     let row =
         |y: i16| (-10..=10i16).flat_map(move |x| gaussian(f32::from(x) / 10.0, f32::from(y) / 10.0, 255));
     program.write("a.splat", (-10..=10).flat_map(row).chain(gaussian(9.0, 0.0, 10)).collect::<Vec<u8>>());
@@ -79,12 +83,12 @@ fn scans_models_and_gaussians_become_pictures() {
     );
     assert!(render("a.obj").contains("z is up"), "wide and flat");
     assert!(!render("a.gltf").contains("is up"), "the format tells");
-    let info = program.run("info a.gltf");
-    assert!(
-        info.text().starts_with("a.gltf: glTF, ") && info.text().contains("faces: 2 understood"),
-        "{}",
-        info.text()
-    );
+    render("a.stl");
+    for (file, start) in [("a.gltf", "a.gltf: glTF, "), ("a.stl", "a.stl: STL, ")] {
+        let info = program.run(&format!("info {file}"));
+        let text = info.text();
+        assert!(text.starts_with(start) && text.contains("faces: 2 understood"), "{text}");
+    }
     program.run("convert a.splat -o b.ply").text();
     assert!(program.run("info b.ply").text().contains("surfels: 441\n"));
 }

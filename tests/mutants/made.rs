@@ -35,11 +35,30 @@ const GLTF: &str = r#"{ "asset" : { "version" : "2.0" } , "scene" : 0 , "scenes"
 { "buffer" : 0 , "byteOffset" : 64 , "byteLength" : 4 } , { "buffer" : 0 , "byteOffset" : 68 , "byteLength" : 768 } ] ,
 "buffers" : [ { "byteLength" : 836 "#;
 
+const STL: &str = "solid a b
+facet normal 0 0 1
+ outer loop
+  vertex 0 0 0
+  vertex 1e0 0.5 -0
+  vertex 0 2.25 0
+ endloop
+endfacet
+FACET NORMAL 0 0 0
+ OUTER LOOP
+  VERTEX 0 2.25 0
+  VERTEX 1 0.5 0
+  VERTEX 1 1 1
+ ENDLOOP
+ENDFACET
+endsolid a b
+";
+
 /// Each format by its extension, with its files; those of SPZ are not compressed.
 pub fn all() -> Vec<(&'static str, Vec<Vec<u8>>)> {
     vec![
         ("ptx", vec![PTX.into()]),
         ("obj", OBJ.map(Vec::from).into()),
+        ("stl", stl().into()),
         ("gltf", gltf()),
         ("splat", vec![splat()]),
         ("spz", [1, 2, 3].map(spz).into()),
@@ -64,6 +83,19 @@ fn gltf() -> Vec<Vec<u8>> {
         [b"glTF", &2u32.to_le_bytes()[..], &(12 + binary.len() as u32).to_le_bytes(), &binary].concat();
     let uri = STANDARD.encode(&buffer);
     vec![format!("{GLTF} , \"uri\" : \"data:;base64,{uri}\" }} ] }}").into(), binary]
+}
+
+/// A tetrahedron in binary, and two triangles as text.
+fn stl() -> [Vec<u8>; 2] {
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.5], [0.0, 2.0, 0.25], [0.5, 0.125, 3.0]];
+    let triangle = |[a, b, c]: [usize; 3]| {
+        let normal = [0.0, 0.0, 1.0];
+        let all = [normal, corners[a], corners[b], corners[c]];
+        floats(all.as_flattened()).chain([0, 0]).collect::<Vec<_>>()
+    };
+    let triangles = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]].map(triangle).concat();
+    let binary = [&[b' '; 80][..], &4u32.to_le_bytes(), &triangles].concat();
+    [binary, STL.into()]
 }
 
 fn splat() -> Vec<u8> {

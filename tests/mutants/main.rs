@@ -109,8 +109,12 @@ fn check_undamaged() {
 fn read(format: &str, bytes: &[u8]) -> surfel::Result<Loaded> {
     let named = |name: &&str| bytes.windows(name.len()).any(|window| window == name.as_bytes());
     let scalar = ["radius\n", "tag\n"].iter().find(|name| named(name)).map(|name| name.trim_end().into());
-    // Only its name tells what it is.
-    let name = if format == "splat" { "mutant.splat" } else { "mutant" };
+    // Only their names tell what they are.
+    let name = match format {
+        "splat" => "mutant.splat",
+        "stl" => "mutant.stl",
+        _ => "mutant",
+    };
     // The nodes of an octree are needed for its coarse levels alone.
     let min_points = (format == "copc.laz").then_some(1);
     formats::read_bytes(name, bytes, &ReadOptions { scalar, min_points, ..Default::default() })

@@ -11,7 +11,7 @@ use surfel::geometry::ToLines;
 /// Options of `surfel convert`.
 #[derive(Args, Debug)]
 pub struct Convert {
-    /// PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, SPLAT, SPZ or text files, or built-in scenes such as scene:bumpy-sphere; several become one file
+    /// PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, STL, SPLAT, SPZ or text files, or built-in scenes such as scene:bumpy-sphere; several become one file
     #[arg(required = true, value_name = "INPUT")]
     pub inputs: Vec<OsString>,
     /// The file to write: .ply, .las, .laz, .copc.laz or .e57
@@ -50,7 +50,7 @@ pub struct Convert {
     /// What points are coloured by
     #[command(flatten)]
     pub colours: Colours,
-    /// Up direction, for --color-by height [default: 0,0,1 for LAS, LAZ, E57, PTX and wide flat bare points, 0,-1,0 for depth images and 3D Gaussians but SPZ, otherwise 0,1,0]
+    /// Up direction, for --color-by height [default: 0,0,1 for LAS, LAZ, E57, PTX, STL and wide flat bare points, 0,-1,0 for depth images and 3D Gaussians but SPZ, otherwise 0,1,0]
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
     pub up: Option<DVec3>,
     /// Prints nothing but warnings and errors
@@ -76,7 +76,7 @@ impl Convert {
 /// Options of `surfel info`.
 #[derive(Args, Debug)]
 pub struct Info {
-    /// A PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, SPLAT, SPZ or text file, or a built-in scene such as scene:bumpy-sphere
+    /// A PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, STL, SPLAT, SPZ or text file, or a built-in scene such as scene:bumpy-sphere
     pub input: OsString,
     /// How normals and radii are estimated
     #[command(flatten)]

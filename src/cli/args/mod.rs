@@ -126,7 +126,7 @@ pub struct Man {
 /// Options of `surfel render`.
 #[derive(Args, Debug)]
 pub struct Render {
-    /// PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, SPLAT, SPZ or text files, or built-in scenes such as scene:bumpy-sphere; several become one scene
+    /// PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, STL, SPLAT, SPZ or text files, or built-in scenes such as scene:bumpy-sphere; several become one scene
     #[arg(required = true, value_name = "INPUT")]
     pub inputs: Vec<OsString>,
     /// The picture: .png (sRGB, or `-` for standard output) or .exr (linear light)
@@ -238,7 +238,7 @@ pub struct Camera {
     /// The point that the camera looks at [default: the centre of the scene]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub target: Option<DVec3>,
-    /// Up direction of the picture [default: 0,0,1 for LAS, LAZ, E57, PTX and wide flat bare points, 0,-1,0 for depth images and 3D Gaussians but SPZ, otherwise 0,1,0]
+    /// Up direction of the picture [default: 0,0,1 for LAS, LAZ, E57, PTX, STL and wide flat bare points, 0,-1,0 for depth images and 3D Gaussians but SPZ, otherwise 0,1,0]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub up: Option<DVec3>,
     /// Vertical angle of view, degrees [default: 45]

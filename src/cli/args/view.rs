@@ -11,7 +11,7 @@ use surfel::{Rasterizer, Result, Settings};
 /// Options of `surfel view`.
 #[derive(Args, Debug)]
 pub struct View {
-    /// PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, SPLAT, SPZ or text files, or built-in scenes such as scene:bumpy-sphere; several become one scene, none an empty window
+    /// PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, STL, SPLAT, SPZ or text files, or built-in scenes such as scene:bumpy-sphere; several become one scene, none an empty window
     #[arg(value_name = "INPUT")]
     pub inputs: Vec<OsString>,
     /// The first method [default: perspective-ewa; pull-push for lines or triangles]
