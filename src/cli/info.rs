@@ -12,7 +12,7 @@ use surfel::estimate::{Estimate, Estimated, spacing};
 use surfel::formats::declared::Element;
 use surfel::formats::{self, Dropped, Faces, Inspected, Lines, Loaded, ReadOptions, Report};
 use surfel::geometry::{Cloud, Colours, Model, Parts, View};
-use surfel::load::{check_filter, scene, scene_cloud};
+use surfel::load::{check_filter, check_points, scene, scene_cloud};
 use surfel::{Result, thousands};
 
 /// Number of skipped names that are printed; the header lists all of them.
@@ -20,6 +20,7 @@ const MOST_NAMES: usize = 8;
 
 /// Prints the contents of a file or scene. If its points cannot be rendered, prints what the header declares and fails with the cause.
 pub fn run(args: &Info) -> Result<()> {
+    check_points(&[args.input.as_ref()], args.points.points)?;
     check_filter(&[args.input.as_ref()], &args.points.filter())?;
     if args.json {
         return value::run(args);
@@ -29,22 +30,33 @@ pub fn run(args: &Info) -> Result<()> {
     }
     let path = Path::new(&args.input);
     let bars = progress::bars(false);
-    let options = ReadOptions {
-        columns: args.points.columns.clone(),
-        filter: args.points.filter(),
-        triangles: args.points.polygons,
-        attributes: counts::wanted(),
-        ..Default::default()
-    };
-    let Inspected { format, encoding, elements, loaded } = formats::inspect(path, &options, &*bars)?;
+    let Inspected { format, encoding, elements, loaded } =
+        formats::inspect(path, &read_options(args), &*bars)?;
     print(&header(path, &format!("{format}, {encoding}"), &elements))?;
     let Loaded { cloud, report, attributes } = loaded?;
     print(&(properties(&report) + &counts::text(&attributes) + &connectivity(&report, &cloud)))?;
-    let model = cloud.into_model(args.points.polygons, &args.points.estimate(), &*bars);
+    let model = kept(cloud, args).into_model(args.points.polygons, &args.points.estimate(), &*bars);
     let (model, estimated) = model.map_err(|error| error.in_input(path.display().to_string()))?;
     drop(bars);
     let text = describe(&model, report.points) + &sources(&estimated);
     print(&(text + &dropped(report.dropped, &estimated) + &stated(&report) + &trailing(&report)))
+}
+
+/// What is read of a file.
+fn read_options(args: &Info) -> ReadOptions {
+    ReadOptions {
+        columns: args.points.columns.clone(),
+        filter: args.points.filter(),
+        min_points: args.points.points,
+        triangles: args.points.polygons,
+        attributes: counts::wanted(),
+        ..Default::default()
+    }
+}
+
+/// The points of a file that are kept.
+fn kept(cloud: Cloud, args: &Info) -> Cloud {
+    args.points.points.map(|points| cloud.some(points as usize)).unwrap_or(cloud)
 }
 
 /// Describes a built-in scene under these options.

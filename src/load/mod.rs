@@ -143,7 +143,7 @@ pub fn load(
 impl Load<'_> {
     fn all(&self, inputs: &[&OsStr]) -> Result<LoadedModel> {
         self.check_property(inputs)?;
-        self.check_points(inputs)?;
+        check_points(inputs, self.options.points)?;
         check_filter(inputs, &self.options.filter)?;
         let is_previewed = self.preview_levels(inputs);
         let (mut parts, mut read, mut dropped) = (Vec::new(), 0, Dropped::default());
@@ -239,16 +239,6 @@ impl Load<'_> {
         Err(Error::Usage(format!(
             "{scene}: its points have no property `{property}`: colour by x, y, z, height, normal or radius"
         )))
-    }
-
-    /// Fails if a built-in scene, which can have any number of points, should keep some.
-    fn check_points(&self, inputs: &[&OsStr]) -> Result<()> {
-        match (self.options.points, inputs.iter().find_map(|input| scene(input))) {
-            (Some(points), Some(scene)) => Err(Error::Usage(format!(
-                "{scene}: a built-in scene has its number of points in its name: add points={points} there"
-            ))),
-            _ => Ok(()),
-        }
     }
 
     /// Reads an input, whose points come after `first` others; the report is that of a file.
@@ -402,6 +392,19 @@ pub fn check_filter(inputs: &[&OsStr], filter: &Filter) -> Result<()> {
     match scenes.as_deref() {
         Some([first, ..]) if !filter.is_none() => Err(Error::Usage(format!(
             "{first}: a filter leaves out points of files, and a built-in scene is whole: give a file, or no filter"
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Checks that what keeps some points has files to read.
+///
+/// # Errors
+/// [`Error::Usage`] if points are to be kept of a built-in scene, which can have any number of them.
+pub fn check_points(inputs: &[&OsStr], points: Option<u64>) -> Result<()> {
+    match (points, inputs.iter().find_map(|input| scene(input))) {
+        (Some(points), Some(scene)) => Err(Error::Usage(format!(
+            "{scene}: a built-in scene has its number of points in its name: add points={points} there"
         ))),
         _ => Ok(()),
     }

@@ -61,6 +61,24 @@ fn estimation_is_described() {
 }
 
 #[test]
+fn the_points_that_are_kept_are_described() {
+    let program = Program::new();
+    let grid: Vec<String> = (0..49).map(|i| format!("{} {} 0 0 0 1 1", i % 7, i / 7)).collect();
+    program.write("a.ply", surfels(&grid.iter().map(String::as_str).collect::<Vec<_>>()));
+    let run = program.run("info a.ply --points 10");
+    let text = run.text();
+    assert!(
+        text.contains("points: 49\nsurfels: 10\n") && text.contains("radii: 10 from neighbours"),
+        "{text}"
+    );
+    let run = program.run("info a.ply --points 10 --json");
+    let value: serde_json::Value = serde_json::from_str(run.text()).unwrap();
+    assert_eq!([&value["points"], &value["surfels"]], [49, 10]);
+    let run = program.run("info scene:sphere --points 10");
+    assert!(run.error(2).contains("add points=10 there"), "{}", run.err);
+}
+
+#[test]
 fn edges_and_faces_are_described() {
     let program = Program::new();
     let camera = "element camera 1\nproperty float view_px\nproperty float view_py\nproperty float view_pz\n";

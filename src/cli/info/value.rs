@@ -9,7 +9,7 @@ use std::path::Path;
 use surfel::Result;
 use surfel::estimate::{Estimated, spacing};
 use surfel::formats::declared::Element;
-use surfel::formats::{self, Dropped, Inspected, Loaded, ReadOptions, Report};
+use surfel::formats::{self, Dropped, Inspected, Loaded, Report};
 use surfel::geometry::{Cloud, Colours, Model, Parts, View};
 use surfel::load::{scene, scene_cloud};
 
@@ -37,22 +37,15 @@ pub(super) fn run(args: &Info) -> Result<()> {
 /// Adds the entries of a file.
 fn file(all: &mut Object, args: &Info) -> Result<()> {
     let path = Path::new(&args.input);
-    let options = ReadOptions {
-        columns: args.points.columns.clone(),
-        filter: args.points.filter(),
-        triangles: args.points.polygons,
-        attributes: counts::wanted(),
-        ..Default::default()
-    };
     let Inspected { encoding, elements, loaded, .. } =
-        formats::inspect(path, &options, &*progress::bars(false))?;
+        formats::inspect(path, &super::read_options(args), &*progress::bars(false))?;
     all.insert("format".into(), encoding.to_string().into());
     all.insert("elements".into(), elements.iter().map(element).collect());
     let Loaded { cloud, report, attributes } = loaded?;
     read(all, &report, &cloud);
     all.insert("points_by_class".into(), json!(counts::of_classes(&attributes)));
     all.insert("points_by_return".into(), json!(counts::of_returns(&attributes)));
-    model(all, args, (&path.display().to_string(), report.points), cloud)
+    model(all, args, (&path.display().to_string(), report.points), super::kept(cloud, args))
 }
 
 /// An element of the header.
