@@ -1,6 +1,7 @@
 //! Identification of unsupported files, for error messages.
 
 use super::quoted::quoted;
+use super::stl;
 
 /// First bytes of common file types, and the remedy.
 const KNOWN: &[(&[u8], &str)] = &[
@@ -44,7 +45,7 @@ pub(super) fn name(file: &str, bytes: &[u8], size: u64) -> String {
     if let Some((_, what)) = named.filter(|_| !bytes.is_empty()) {
         return format!("not a point cloud that can be read, but {what}");
     }
-    if is_binary_stl(bytes, size) {
+    if stl::is_binary(bytes, size) {
         return "not a point cloud that can be read, but a binary STL mesh: name it *.stl".into();
     }
     let beginning = bytes.trim_ascii_start();
@@ -62,12 +63,6 @@ pub(super) fn name(file: &str, bytes: &[u8], size: u64) -> String {
             quoted(line)
         ),
     }
-}
-
-/// Whether it has the length of a binary STL mesh with its declared number of triangles: 80 bytes, the number, 50 bytes each.
-fn is_binary_stl(bytes: &[u8], size: u64) -> bool {
-    let count = bytes.get(80..84).map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]));
-    count.is_some_and(|count| count > 0 && 84 + 50 * u64::from(count) == size)
 }
 
 /// Identifies text formats without a signature by their first lines that are not comments.

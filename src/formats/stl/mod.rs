@@ -25,6 +25,7 @@ use super::table::{Arrays, Collector, Layout, Points, ROWS, fill};
 use super::{Inspected, Loaded, ReadOptions, Report};
 use crate::Progress;
 use crate::error::Cause;
+use binary::Triangles;
 use glam::DVec3;
 use mesh::Mesh;
 
@@ -70,6 +71,11 @@ impl Reader for Stl {
         meter.finish();
         Ok(Inspected { format: self.name(), encoding, elements, loaded })
     }
+}
+
+/// Whether a file with this beginning has the size of a binary file with its number of triangles.
+pub(super) fn is_binary(beginning: &[u8], size: u64) -> bool {
+    binary::triangles(beginning, size).is_some_and(Triangles::is_exact)
 }
 
 /// The vertices, and the triangles.
