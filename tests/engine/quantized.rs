@@ -193,7 +193,14 @@ fn pictures_are_as_near_to_the_truth() {
     let options = options(Rasterizer::Compute);
     let surface = subject.surface().unwrap();
     // A few pixels at the outline, where discs are seen edge-on, decide the error of one picture.
-    let eyes = [[2.0, 1.6, 3.2], [-2.0, 1.1, 3.0], [0.5, -2.6, 2.2], [1.5, 3.6, -1.2], [0.3, 0.1, -3.9]];
+    let eyes = [
+        [2.0, 1.6, 3.2],
+        [-2.0, 1.1, 3.0],
+        [0.5, -2.6, 2.2],
+        [1.5, 3.6, -1.2],
+        [0.3, 0.1, -3.9],
+        [-3.0, -2.0, -1.0],
+    ];
     let mut sums = [0.0; 2];
     for eye in eyes {
         let camera = camera(DVec3::from(eye));

@@ -7,7 +7,7 @@ use crate::geometry::Curvature;
 const SIZES: i32 = 42;
 /// Exponent of the least size.
 const LEAST: i32 = -9;
-/// Powers of 2¼ as the upper halves of floats.
+/// Mantissas of 1, 2^¼, 2^½ and 2^¾, of the 7 bits that the upper half of a float has.
 const ROOTS: [u32; 4] = [0, 0x18, 0x35, 0x57];
 /// Shapes: one with equal principal curvatures; then ratios from 0.75 to −1 in steps of a quarter, each in these directions.
 const LINES: u32 = 12;
