@@ -91,7 +91,7 @@ Sample sample_of(uint i, ivec2 pixel, uint nearest) {
     float radius = radius_of(i);
     // A circle of the ellipse's area.
     if (ELLIPSES && !is_billboard(i)) radius *= sqrt(ellipse_of(i).w);
-    float least = PAPER ? 0.0 : LEAST_RADIUS / focal_scale() * (PERSPECTIVE ? point.distance : 1.0);
+    float least = PAPER ? 0.0 : LEAST_RADIUS / focal_scale() * (PERSPECTIVE ? from_eye(point.distance) : 1.0);
     vec3 normal = normal_of(i);
     Sample s = NO_SAMPLE;
     s.subpixel = radius < least;
@@ -99,7 +99,7 @@ Sample sample_of(uint i, ivec2 pixel, uint nearest) {
     radius = max(radius, least);
     s.near = s.depth = point.distance;
     s.far = point.distance + (PAPER ? 1.0 : 2.0) * radius;
-    s.radius = focal_scale() * radius / (PERSPECTIVE ? point.distance : 1.0);
+    s.radius = focal_scale() * radius / (PERSPECTIVE ? from_eye(point.distance) : 1.0);
     s.displacement = PAPER ? vec2(0.0) : point.offset;
     // Seen from behind, a disc has the opposite normal.
     s.normal = point.facing > 0.0 ? -normal : normal;

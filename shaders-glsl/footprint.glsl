@@ -69,14 +69,14 @@ mat2x3 depth_plane(vec3 n, vec2 h, vec2 facing, vec2 anchor) {
     key = divide(key, facing);
     x = divide(x, facing);
     y = divide(y, facing);
+    if (DISTANT) key = add(key, -frame.key_offset);
     return mat2x3(vec3(key.x, x.x, y.x), vec3(key.y, x.y, y.y));
 }
 
-// κ of a disc's nearest point, which is `lean` nearer than its centre `position` at distance w.
-float key_of_disc(float w, vec3 position, float lean) {
-    if (PERSPECTIVE) return view.near / (w - lean);
-    float z = dot(view.forward_hi.xyz, position) - lean;
-    return 1.0 - (z - view.near) * view.key_slope;
+// κ of a disc's nearest point, which is `lean` nearer than its centre.
+float key_of_disc(Disc disc, float lean) {
+    float distance = PERSPECTIVE ? counted_distance(disc.w).x : dot(view.forward_hi.xyz, disc.hi);
+    return key_at_distance(distance - lean);
 }
 
 // Depth below its centre down to which the disc of a front-facing convex surface covers samples, relative to the radius of curvature and to
@@ -93,13 +93,14 @@ float least_key_of(uint i, Disc disc) {
     // Down the tangent plane, as the eye sees it.
     float curvature = curvature_along(stored, ray * tangents(disc.normal));
     if (!(curvature > 0.0)) return 0.0;
-    float depth = TURN_DEPTH * -disc.facing.x / distance / curvature, key = key_of_disc(disc.w.x, disc.hi, 0.0);
-    return PERSPECTIVE ? key / (1.0 + depth / distance) : key - view.key_slope * depth;
+    float depth = TURN_DEPTH * -disc.facing.x / distance / curvature, key = key_of_disc(disc, 0.0);
+    return PERSPECTIVE ? farther_key(key, depth / distance) : key - view.key_slope * depth;
 }
 
 // κ (has_linear_depth: distance) at the anchor, and its derivatives, of a plane that is not the tangent plane; `to_centre` is in px.
 mat2x3 flat_plane(Disc disc, vec2 slope, vec2 to_centre) {
-    vec2 value = has_linear_depth() ? disc.w : vec2(view.near / disc.w.x, 0.0);
+    vec2 value = counted_distance(disc.w);
+    if (PERSPECTIVE && !has_linear_depth()) value = vec2(key_at_distance(value.x), 0.0);
     if (!PERSPECTIVE) {
         vec2 z = dot_double(disc.hi, disc.lo, view.forward_hi.xyz, view.forward_lo.xyz);
         value = add(two_sum(1.0, view.near * view.key_slope), scale(z, -view.key_slope));
@@ -231,6 +232,7 @@ uint footprint(uint i, out Splat splat) {
     if (CULL_AUTO && disc.facing.x >= 0.0 && !is_two_sided(i)) splat.anchor |= BACK_SPLAT;
     float epsilon = MOVED ? 0.0 : frame.epsilon * disc.radius;
     splat.epsilon = PERSPECTIVE ? disc.w.x / (disc.w.x + epsilon) : view.key_slope * epsilon;
+    if (DISTANT) splat.epsilon = max(epsilon / (disc.w.x + epsilon), 1e-30);
     if (disc.facing.x > 0.0) splat.epsilon = -splat.epsilon;
     bool tangent = !is_sprite() && FOOTPRINT != SQUARE && FOOTPRINT != POINT;
     mat2x3 plane = tangent ? depth_plane(disc.normal, disc.h, disc.facing, anchor) : flat_plane(disc, image.slope, to_centre);
@@ -238,7 +240,7 @@ uint footprint(uint i, out Splat splat) {
     splat.plane_lo = plane[1];
     store_screen_clip(i, disc, anchor);
     splat.sqrt_det = image.sqrt_det;
-    splat.key_disc = key_of_disc(disc.w.x, disc.hi, image.lean);
+    splat.key_disc = key_of_disc(disc, image.lean);
     return DRAWN;
 }
 
@@ -259,7 +261,7 @@ Box box_of_splat(uint i, Splat splat) {
     float nearest = nearest_of(splat, variance, stretch);
     if (any(greaterThan(low, high)) || nearest <= frame.key_far) return EMPTY_BOX;
     uint clip = screen_clip_index(i);
-    Box box = box_of(low, high, nearest, has_clip(clip) ? chunk.first_clip + clip : NO_CLIP);
+    Box box = box_of(low, high, least_tested(nearest), has_clip(clip) ? chunk.first_clip + clip : NO_CLIP);
     if (is_back(splat)) box.y |= BACK_BOX;
     return box;
 }

@@ -44,7 +44,7 @@ Pixel pixel_of(uvec2 coordinates, bool visible, uint id, float alpha) {
     Attributes attributes = attributes_of(id);
     vec2 centre = vec2(coordinates) + 0.5;
     float key = plane_at(splat.plane_hi, splat.plane_lo, centre - anchor_of(splat));
-    if (has_linear_depth()) key = frame.near / key;
+    if (has_linear_depth()) key = world_key(key);
     return normalize_pixel(centre, visible, alpha, vec4(1.0, attributes.attribute0),
         vec4(frame.key_gain * shown_key(key, splat.key_disc), attributes.attribute1));
 }

@@ -14,6 +14,7 @@ layout(constant_id = 43) const uint HOST_SAMPLES = 1;
 
 layout(push_constant) uniform Seed {
     vec2 key;         // maps the host's depth d to κ = key.x d + key.y
+    float key_offset; // perspective: near / z − κ
     float resolution; // resolution of the host's depth and its rounding error, as κ
     float rounding;   // relative rounding error of sums of κ
     float behind;     // largest ε: perspective: over the distance of the near plane; orthographic: as a difference of κ
@@ -42,8 +43,8 @@ float farthest() {
 }
 
 void main() {
-    float key = clamp(farthest(), 0.0, 1.0);
-    gl_FragDepth = PERSPECTIVE ? key / (1.0 + seed.behind * key) : max(key - seed.behind, 0.0);
+    float key = clamp(farthest(), 0.0, 1.0), part = seed.behind * (key + seed.key_offset);
+    gl_FragDepth = max(PERSPECTIVE ? (key - seed.key_offset * part) / (1.0 + part) : key - seed.behind, 0.0);
 }
 
 #endif

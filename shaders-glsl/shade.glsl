@@ -98,7 +98,7 @@ void main() {
         }
         if (SHADING == COLOUR) shaded = colour;
         if (SHADING == NORMAL) shaded = s.normal;
-        if (!PERSPECTIVE) s.depth += view.distance_offset;
+        if (!PERSPECTIVE || DISTANT) s.depth += view.distance_offset;
         if (SHADING == DEPTH) shaded = vec3(s.depth);
         image = picture_pixel(shaded, COVERAGE ? coverage_of(pixel) : 1.0);
     }

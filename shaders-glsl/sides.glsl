@@ -90,7 +90,7 @@ const ivec2 BESIDE[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0
 // κ of the point behind the centre by `offset`, relative to the distance in perspective, else in κ; moved back by ε as those of visibility are.
 float key_behind(float key, float shift, float offset) {
     // At the eye, and behind it, κ is beyond all.
-    return PERSPECTIVE ? key / max(1.0 + shift + offset, 1e-6) : key - shift - offset;
+    return PERSPECTIVE ? farther_key(key, max(shift + offset, 1e-6 - 1.0)) : key - shift - offset;
 }
 
 // κ of the surface that faces the eye so many pixels from a centre.
@@ -103,18 +103,19 @@ float key_at(ivec2 centre, ivec2 offset) {
 bool is_hidden(Splat splat) {
     float plane = plane_at(splat.plane_hi, splat.plane_lo, splat.offset), key = plane;
 #ifdef TILES
-    if (has_linear_depth()) key = frame.near / key;
+    if (has_linear_depth()) key = world_key(key);
 #else
-    if (has_linear_depth()) key = view.near / key;
+    if (has_linear_depth()) key = key_at_distance(key);
 #endif
     // ε, frame.epsilon radii, a radius, and the width of a pixel.
-    float shift = PERSPECTIVE ? 1.0 / abs(splat.epsilon) - 1.0 : abs(splat.epsilon), radius = shift / frame.epsilon;
+    float shift = PERSPECTIVE ? relative_epsilon(splat.epsilon) : abs(splat.epsilon), radius = shift / frame.epsilon;
     float width = PERSPECTIVE ? frame.pixel_width : frame.key_slope * frame.pixel_width;
     float own = key_behind(key, shift, 0.0), unit = max(radius, width);
     ivec2 centre = ivec2(anchor_of(splat));
     float at_centre = key_at(centre, ivec2(0));
     if (at_centre >= key_behind(key, shift, radius)) {
-        float slope = length(splat.plane_hi.yz) / (PERSPECTIVE ? plane : 1.0);
+        float slope = length(splat.plane_hi.yz);
+        if (PERSPECTIVE) slope /= has_linear_depth() ? plane + (DISTANT ? frame.distance_offset : 0.0) : inverse_depth(plane);
         if (slope > STEEP * width || at_centre <= key_behind(key, shift, -BEHIND_CENTRE * unit)) return true;
         int reach = int(min(radius / width, 1e6)) + 2;
         bool are_ends_hidden = true;

@@ -35,7 +35,7 @@ pub static ATTRIBUTE_VERTEX: Module = Module {
     name: "attribute_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("attribute_vertex.spv"),
-    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 22, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70, 78],
+    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 22, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70, 78, 79],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::WEIGHTS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -45,7 +45,7 @@ pub static ATTRIBUTE_FRAGMENT: Module = Module {
     name: "attribute_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("attribute_fragment.spv"),
-    constants: &[0, 4, 15, 16, 19, 27, 70],
+    constants: &[0, 4, 15, 16, 19, 27, 70, 79],
     resources: &[(&resource::FRAME, false)],
     push: 0,
 };
@@ -55,7 +55,7 @@ pub static ATTRIBUTE_COMPUTE: Module = Module {
     name: "attribute_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("attribute_compute.spv"),
-    constants: &[0, 3, 4, 14, 15, 16, 17, 19, 23, 24, 44, 45, 46, 47, 67, 70],
+    constants: &[0, 3, 4, 14, 15, 16, 17, 19, 23, 24, 44, 45, 46, 47, 67, 70, 79],
     resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, false), (&resource::SUMS0, true), (&resource::SUMS1, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -65,7 +65,7 @@ pub static ATTRIBUTE_CLIP_LINES_VERTEX: Module = Module {
     name: "attribute_clip_lines_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("attribute_clip_lines_vertex.spv"),
-    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 22, 23, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70, 78],
+    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 22, 23, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70, 78, 79],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false), (&resource::WEIGHTS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -75,7 +75,7 @@ pub static ATTRIBUTE_CLIP_LINES_FRAGMENT: Module = Module {
     name: "attribute_clip_lines_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("attribute_clip_lines_fragment.spv"),
-    constants: &[0, 4, 15, 16, 19, 23, 24, 27, 70],
+    constants: &[0, 4, 15, 16, 19, 23, 24, 27, 70, 79],
     resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false)],
     push: 0,
 };
@@ -85,7 +85,7 @@ pub static ATTRIBUTE_SUBGROUPS_COMPUTE: Module = Module {
     name: "attribute_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("attribute_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 14, 15, 16, 17, 19, 23, 24, 44, 45, 46, 47, 67, 70],
+    constants: &[0, 3, 4, 14, 15, 16, 17, 19, 23, 24, 44, 45, 46, 47, 67, 70, 79],
     resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, false), (&resource::SUMS0, true), (&resource::SUMS1, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -95,7 +95,7 @@ pub static ATTRIBUTE_BEHIND_FRAGMENT: Module = Module {
     name: "attribute_behind_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("attribute_behind_fragment.spv"),
-    constants: &[0, 4, 15, 16, 19, 27, 70],
+    constants: &[0, 4, 15, 16, 19, 27, 70, 79],
     resources: &[(&resource::FRAME, false), (&resource::VISIBILITY_IMAGE, false)],
     push: 0,
 };
@@ -105,7 +105,7 @@ pub static ATTRIBUTE_BEHIND_CLIP_LINES_FRAGMENT: Module = Module {
     name: "attribute_behind_clip_lines_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("attribute_behind_clip_lines_fragment.spv"),
-    constants: &[0, 4, 15, 16, 19, 23, 24, 27, 70],
+    constants: &[0, 4, 15, 16, 19, 23, 24, 27, 70, 79],
     resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false), (&resource::VISIBILITY_IMAGE, false)],
     push: 0,
 };
@@ -115,7 +115,7 @@ pub static BEHIND_VERTEX: Module = Module {
     name: "behind_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("behind_vertex.spv"),
-    constants: &[0, 15, 16, 23, 37, 67, 70],
+    constants: &[0, 15, 16, 23, 37, 67, 70, 79],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -125,7 +125,7 @@ pub static BEHIND_FRAGMENT: Module = Module {
     name: "behind_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("behind_fragment.spv"),
-    constants: &[0, 15, 16, 23, 24, 70],
+    constants: &[0, 15, 16, 23, 24, 70, 79],
     resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false), (&resource::COVERAGE, true), (&resource::VISIBILITY_IMAGE, false)],
     push: 0,
 };
@@ -135,7 +135,7 @@ pub static BEHIND_COMPUTE: Module = Module {
     name: "behind_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("behind_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 67, 70, 72, 73, 76],
+    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 67, 70, 72, 73, 76, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, false), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::EDGE_TILES, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -145,7 +145,7 @@ pub static BEHIND_SUBGROUPS_COMPUTE: Module = Module {
     name: "behind_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("behind_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 67, 70, 72, 73, 76],
+    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 67, 70, 72, 73, 76, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, false), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::CLIP_TEXELS, false), (&resource::EDGE_TILES, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -155,7 +155,7 @@ pub static BEHIND_MIX_COMPUTE: Module = Module {
     name: "behind_mix_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("behind_mix_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 76],
+    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 76, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::COVERAGE, false), (&resource::SUMS0_IMAGE, false), (&resource::SUMS1_IMAGE, false), (&resource::BEHIND_IMAGE, false)],
     push: 0,
 };
@@ -165,7 +165,7 @@ pub static BEHIND_NEAREST_SAMPLES_FRAGMENT: Module = Module {
     name: "behind_nearest_samples_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("behind_nearest_samples_fragment.spv"),
-    constants: &[0, 15, 16, 23, 24, 70],
+    constants: &[0, 15, 16, 23, 24, 70, 79],
     resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false), (&resource::COVERAGE, true), (&resource::VISIBILITY_IMAGE, false)],
     push: 0,
 };
@@ -345,7 +345,7 @@ pub static FETCH_COMPUTE: Module = Module {
     name: "fetch_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_compute.spv"),
-    constants: &[0, 1, 5, 12, 13, 17, 22, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 68, 73, 78],
+    constants: &[0, 1, 5, 12, 13, 17, 22, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 68, 73, 78, 79],
     resources: &[(&resource::FRAME, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -355,7 +355,7 @@ pub static FETCH_LINES_COMPUTE: Module = Module {
     name: "fetch_lines_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_lines_compute.spv"),
-    constants: &[0, 17, 28, 29, 33, 34, 37, 38, 39],
+    constants: &[0, 17, 28, 29, 33, 34, 37, 38, 39, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::LINE_DIRECTIONS, false), (&resource::VERTEX_COLOURS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -365,7 +365,7 @@ pub static FETCH_TRIANGLES_COMPUTE: Module = Module {
     name: "fetch_triangles_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_triangles_compute.spv"),
-    constants: &[0, 17, 28, 29, 33, 34, 37, 38, 39],
+    constants: &[0, 17, 28, 29, 33, 34, 37, 38, 39, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::VERTEX_COLOURS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -375,7 +375,7 @@ pub static FETCH_RASTER_POINTS_COMPUTE: Module = Module {
     name: "fetch_raster_points_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_raster_points_compute.spv"),
-    constants: &[0, 1, 5, 12, 13, 17, 22, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 68, 73, 78],
+    constants: &[0, 1, 5, 12, 13, 17, 22, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 68, 73, 78, 79],
     resources: &[(&resource::FRAME, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST_ID, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -425,7 +425,7 @@ pub static FOOTPRINT_COMPUTE: Module = Module {
     name: "footprint_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("footprint_compute.spv"),
-    constants: &[0, 1, 2, 12, 13, 14, 15, 16, 21, 22, 23, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 67, 68, 70, 73, 78],
+    constants: &[0, 1, 2, 12, 13, 14, 15, 16, 21, 22, 23, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 67, 68, 70, 73, 78, 79],
     resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -435,7 +435,7 @@ pub static FOOTPRINT_TILES_COMPUTE: Module = Module {
     name: "footprint_tiles_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("footprint_tiles_compute.spv"),
-    constants: &[0, 1, 2, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 21, 22, 23, 26, 27, 37, 45, 46, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 67, 68, 70, 73, 78],
+    constants: &[0, 1, 2, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 21, 22, 23, 26, 27, 37, 45, 46, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 67, 68, 70, 73, 78, 79],
     resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::SPLAT_ATTRIBUTES, true), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::WEIGHTS, false), (&resource::SPLAT_BOXES, true), (&resource::ORDER, false), (&resource::VISIBLE_CLUSTERS, false), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -445,7 +445,7 @@ pub static NEAREST_VERTEX: Module = Module {
     name: "nearest_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("nearest_vertex.spv"),
-    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 22, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70, 78],
+    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 22, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70, 78, 79],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -455,7 +455,7 @@ pub static NEAREST_FRAGMENT: Module = Module {
     name: "nearest_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("nearest_fragment.spv"),
-    constants: &[0, 4, 15, 16, 70],
+    constants: &[0, 4, 15, 16, 70, 79],
     resources: &[(&resource::FRAME, false)],
     push: 0,
 };
@@ -465,7 +465,7 @@ pub static NEAREST_COMPUTE: Module = Module {
     name: "nearest_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 67, 70, 72, 76],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 67, 70, 72, 76, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -475,7 +475,7 @@ pub static NEAREST_COVERAGE_VERTEX: Module = Module {
     name: "nearest_coverage_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("nearest_coverage_vertex.spv"),
-    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 22, 23, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70, 78],
+    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 22, 23, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70, 78, 79],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -485,7 +485,7 @@ pub static NEAREST_COVERAGE_FRAGMENT: Module = Module {
     name: "nearest_coverage_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("nearest_coverage_fragment.spv"),
-    constants: &[0, 4, 15, 16, 23, 24, 70],
+    constants: &[0, 4, 15, 16, 23, 24, 70, 79],
     resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false), (&resource::COVERAGE, true)],
     push: 0,
 };
@@ -495,7 +495,7 @@ pub static NEAREST_CLIP_LINES_VERTEX: Module = Module {
     name: "nearest_clip_lines_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("nearest_clip_lines_vertex.spv"),
-    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 22, 23, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70, 78],
+    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 22, 23, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70, 78, 79],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -505,7 +505,7 @@ pub static NEAREST_CLIP_LINES_FRAGMENT: Module = Module {
     name: "nearest_clip_lines_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("nearest_clip_lines_fragment.spv"),
-    constants: &[0, 4, 15, 16, 23, 24, 70],
+    constants: &[0, 4, 15, 16, 23, 24, 70, 79],
     resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false)],
     push: 0,
 };
@@ -515,7 +515,7 @@ pub static NEAREST_SUBGROUPS_COMPUTE: Module = Module {
     name: "nearest_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 67, 70, 72, 76],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 67, 70, 72, 76, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -525,7 +525,7 @@ pub static NEAREST_SLICES_COMPUTE: Module = Module {
     name: "nearest_slices_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_slices_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 67, 70, 72, 76],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 67, 70, 72, 76, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::SUMS0, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -535,7 +535,7 @@ pub static NEAREST_SUBGROUPS_SLICES_COMPUTE: Module = Module {
     name: "nearest_subgroups_slices_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_subgroups_slices_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 67, 70, 72, 76],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 67, 70, 72, 76, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::SUMS0, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -555,7 +555,7 @@ pub static NORMALIZE_FRAGMENT: Module = Module {
     name: "normalize_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_fragment.spv"),
-    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 76],
+    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 76, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY_IMAGE, false), (&resource::SUMS0_IMAGE, false), (&resource::SUMS1_IMAGE, false)],
     push: 0,
 };
@@ -565,7 +565,7 @@ pub static NORMALIZE_COMPUTE: Module = Module {
     name: "normalize_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("normalize_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 76],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 76, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, false), (&resource::SUMS1, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: 0,
 };
@@ -585,7 +585,7 @@ pub static NORMALIZE_COVERAGE_FRAGMENT: Module = Module {
     name: "normalize_coverage_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_coverage_fragment.spv"),
-    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 76],
+    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 76, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::COVERAGE, false), (&resource::VISIBILITY_IMAGE, false), (&resource::SUMS0_IMAGE, false), (&resource::SUMS1_IMAGE, false)],
     push: 0,
 };
@@ -595,7 +595,7 @@ pub static NORMALIZE_COVERAGE_COMPUTE: Module = Module {
     name: "normalize_coverage_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("normalize_coverage_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 76],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 76, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, false), (&resource::SUMS1, false), (&resource::IMAGE_OUTPUT, true), (&resource::COVERAGE, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
     push: 0,
 };
@@ -605,7 +605,7 @@ pub static NORMALIZE_SUBPASS_FRAGMENT: Module = Module {
     name: "normalize_subpass_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_subpass_fragment.spv"),
-    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42, 76],
+    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42, 76, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY_INPUT, false), (&resource::SUMS0_INPUT, false), (&resource::SUMS1_INPUT, false)],
     push: size_of::<layout::Subpass>() as u32,
 };
@@ -615,7 +615,7 @@ pub static NORMALIZE_SUBPASS_COVERAGE_FRAGMENT: Module = Module {
     name: "normalize_subpass_coverage_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_subpass_coverage_fragment.spv"),
-    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42, 76],
+    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42, 76, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::COVERAGE, false), (&resource::VISIBILITY_INPUT, false), (&resource::SUMS0_INPUT, false), (&resource::SUMS1_INPUT, false)],
     push: size_of::<layout::Subpass>() as u32,
 };
@@ -685,7 +685,7 @@ pub static POINTS_VERTEX: Module = Module {
     name: "points_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("points_vertex.spv"),
-    constants: &[0, 1, 12, 13, 22, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73, 78],
+    constants: &[0, 1, 12, 13, 22, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73, 78, 79],
     resources: &[(&resource::FRAME, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -705,7 +705,7 @@ pub static PROJECT_COMPUTE: Module = Module {
     name: "project_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("project_compute.spv"),
-    constants: &[0, 1, 2, 12, 13, 22, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 73, 78],
+    constants: &[0, 1, 2, 12, 13, 22, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 73, 78, 79],
     resources: &[(&resource::FRAME, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::VISIBLE_CLUSTERS, false), (&resource::NEAREST, true), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -715,7 +715,7 @@ pub static PROJECT_LINES_COMPUTE: Module = Module {
     name: "project_lines_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("project_lines_compute.spv"),
-    constants: &[0, 28, 37],
+    constants: &[0, 28, 37, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::LINE_DIRECTIONS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -725,7 +725,7 @@ pub static PROJECT_TRIANGLES_COMPUTE: Module = Module {
     name: "project_triangles_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("project_triangles_compute.spv"),
-    constants: &[0, 30, 37],
+    constants: &[0, 30, 37, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::ELEMENTS, false), (&resource::LARGE_TRIANGLES, true), (&resource::NEAREST, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -745,7 +745,7 @@ pub static PROJECT_COUNT_ONLY_COMPUTE: Module = Module {
     name: "project_count_only_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("project_count_only_compute.spv"),
-    constants: &[0, 1, 2, 12, 13, 22, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73, 78],
+    constants: &[0, 1, 2, 12, 13, 22, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 73, 78, 79],
     resources: &[(&resource::FRAME, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -765,7 +765,7 @@ pub static PUSH_COMPUTE: Module = Module {
     name: "push_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("push_compute.spv"),
-    constants: &[0, 17, 28, 32, 33, 34, 35, 38, 39, 65, 68],
+    constants: &[0, 17, 28, 32, 33, 34, 35, 38, 39, 65, 68, 79],
     resources: &[(&resource::VIEWS, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -815,7 +815,7 @@ pub static SHADE_COMPUTE: Module = Module {
     name: "shade_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48, 65, 68, 76],
+    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48, 65, 68, 76, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -825,7 +825,7 @@ pub static SHADE_LOOKUPS_COMPUTE: Module = Module {
     name: "shade_lookups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_lookups_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48, 65, 68, 76],
+    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48, 65, 68, 76, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -835,7 +835,7 @@ pub static SHADE_STORE_IDS_COMPUTE: Module = Module {
     name: "shade_store_ids_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_store_ids_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48, 65, 68, 76],
+    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48, 65, 68, 76, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::ID_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -845,7 +845,7 @@ pub static SHADE_LOOKUPS_STORE_IDS_COMPUTE: Module = Module {
     name: "shade_lookups_store_ids_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_lookups_store_ids_compute.spv"),
-    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48, 65, 68, 76],
+    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48, 65, 68, 76, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::ID_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
@@ -855,7 +855,7 @@ pub static SIDES_COMPUTE: Module = Module {
     name: "sides_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("sides_compute.spv"),
-    constants: &[0, 2, 15, 37],
+    constants: &[0, 2, 15, 37, 79],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, true), (&resource::VIEWS, false), (&resource::VISIBILITY_IMAGE, false), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -865,7 +865,7 @@ pub static SIDES_TILES_COMPUTE: Module = Module {
     name: "sides_tiles_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("sides_tiles_compute.spv"),
-    constants: &[0, 2, 15, 37, 63, 71],
+    constants: &[0, 2, 15, 37, 63, 71, 79],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, true), (&resource::SPLAT_BOXES, true), (&resource::VISIBLE_CLUSTERS, false), (&resource::VISIBILITY, false), (&resource::OPEN_TILES, true), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -875,7 +875,7 @@ pub static SURFACE_COMPUTE: Module = Module {
     name: "surface_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 67, 68, 70, 72, 76],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 67, 68, 70, 72, 76, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::OPEN_TILES, true), (&resource::EDGE_TILES, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -885,7 +885,7 @@ pub static SURFACE_SUBGROUPS_COMPUTE: Module = Module {
     name: "surface_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 67, 68, 70, 72, 76],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 67, 68, 70, 72, 76, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false), (&resource::OPEN_TILES, true), (&resource::EDGE_TILES, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -895,7 +895,7 @@ pub static VISIBILITY_VERTEX: Module = Module {
     name: "visibility_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("visibility_vertex.spv"),
-    constants: &[0, 15, 16, 37, 67, 69, 70],
+    constants: &[0, 15, 16, 37, 67, 69, 70, 79],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -905,7 +905,7 @@ pub static VISIBILITY_FRAGMENT: Module = Module {
     name: "visibility_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("visibility_fragment.spv"),
-    constants: &[0, 15, 16, 70],
+    constants: &[0, 15, 16, 70, 79],
     resources: &[(&resource::FRAME, false)],
     push: 0,
 };
@@ -915,7 +915,7 @@ pub static VISIBILITY_COMPUTE: Module = Module {
     name: "visibility_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("visibility_compute.spv"),
-    constants: &[0, 15, 16, 23, 24, 31, 44, 47, 67, 68, 70, 72],
+    constants: &[0, 15, 16, 23, 24, 31, 44, 47, 67, 68, 70, 72, 79],
     resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_CLIPS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -925,7 +925,7 @@ pub static VISIBILITY_COVERAGE_VERTEX: Module = Module {
     name: "visibility_coverage_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("visibility_coverage_vertex.spv"),
-    constants: &[0, 15, 16, 23, 37, 67, 69, 70],
+    constants: &[0, 15, 16, 23, 37, 67, 69, 70, 79],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -935,7 +935,7 @@ pub static VISIBILITY_COVERAGE_FRAGMENT: Module = Module {
     name: "visibility_coverage_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("visibility_coverage_fragment.spv"),
-    constants: &[0, 15, 16, 23, 24, 70],
+    constants: &[0, 15, 16, 23, 24, 70, 79],
     resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false), (&resource::COVERAGE, true)],
     push: 0,
 };
@@ -945,7 +945,7 @@ pub static VISIBILITY_CLIP_LINES_VERTEX: Module = Module {
     name: "visibility_clip_lines_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("visibility_clip_lines_vertex.spv"),
-    constants: &[0, 15, 16, 23, 37, 67, 69, 70],
+    constants: &[0, 15, 16, 23, 37, 67, 69, 70, 79],
     resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -955,7 +955,7 @@ pub static VISIBILITY_CLIP_LINES_FRAGMENT: Module = Module {
     name: "visibility_clip_lines_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("visibility_clip_lines_fragment.spv"),
-    constants: &[0, 15, 16, 23, 24, 70],
+    constants: &[0, 15, 16, 23, 24, 70, 79],
     resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false)],
     push: 0,
 };
@@ -965,7 +965,7 @@ pub static VISIBILITY_SUBGROUPS_COMPUTE: Module = Module {
     name: "visibility_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("visibility_subgroups_compute.spv"),
-    constants: &[0, 15, 16, 23, 24, 31, 44, 47, 67, 68, 70, 72],
+    constants: &[0, 15, 16, 23, 24, 31, 44, 47, 67, 68, 70, 72, 79],
     resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -1008,6 +1008,8 @@ pub mod constant {
     pub const CULL_BACK: u32 = 1;
     /// `CURVATURES`, first in `shaders-glsl/attribute.glsl`.
     pub const CURVATURES: u32 = 70;
+    /// `DISTANT`, first in `shaders-glsl/ambient.glsl`.
+    pub const DISTANT: u32 = 79;
     /// `EDL`, first in `shaders-glsl/ambient.glsl`.
     pub const EDL: u32 = 77;
     /// `ELLIPSES`, first in `shaders-glsl/attribute.glsl`.
@@ -2074,7 +2076,7 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(FillOptions, scale) == 0);
     const _: () = assert!(std::mem::size_of::<FillOptions>() == 16);
 
-    /// `Frame`, 208 bytes, first in `shaders-glsl/ambient.glsl`.
+    /// `Frame`, 224 bytes, first in `shaders-glsl/ambient.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Frame {
@@ -2093,45 +2095,51 @@ pub mod layout {
         /// Byte 28.
         pub key_reach: f32,
         /// Byte 32.
-        pub cutoff: f32,
-        /// Byte 36.
-        pub epsilon: f32,
+        pub key_offset: [f32; 2],
         /// Byte 40.
-        pub visibility_lowpass: f32,
+        pub key_at_zero: f32,
         /// Byte 44.
-        pub attribute_lowpass: f32,
+        pub distance_offset: f32,
         /// Byte 48.
-        pub kernel_a: f32,
+        pub cutoff: f32,
         /// Byte 52.
+        pub epsilon: f32,
+        /// Byte 56.
+        pub visibility_lowpass: f32,
+        /// Byte 60.
+        pub attribute_lowpass: f32,
+        /// Byte 64.
+        pub kernel_a: f32,
+        /// Byte 68.
         pub kernel_n: f32,
         /// Unused: the layout leaves a gap here.
-        pub _pad13: [u8; 8],
-        /// Byte 64.
-        pub background: [f32; 4],
+        pub _pad16: [u8; 8],
         /// Byte 80.
-        pub albedo: [f32; 4],
+        pub background: [f32; 4],
         /// Byte 96.
+        pub albedo: [f32; 4],
+        /// Byte 112.
         pub radiance: [[f32; 4]; 4],
-        /// Byte 160.
-        pub ambient: f32,
-        /// Byte 164.
-        pub specular: f32,
-        /// Byte 168.
-        pub shininess: f32,
-        /// Byte 172.
-        pub pixel_filter: f32,
         /// Byte 176.
-        pub edl: f32,
+        pub ambient: f32,
         /// Byte 180.
-        pub ao: f32,
+        pub specular: f32,
         /// Byte 184.
+        pub shininess: f32,
+        /// Byte 188.
+        pub pixel_filter: f32,
+        /// Byte 192.
+        pub edl: f32,
+        /// Byte 196.
+        pub ao: f32,
+        /// Byte 200.
         pub pixel_width: f32,
         /// Unused: the layout leaves a gap here.
-        pub _pad23: [u8; 4],
-        /// Byte 192.
+        pub _pad26: [u8; 4],
+        /// Byte 208.
         pub origin: [f32; 2],
         /// Unused: the layout leaves a gap here.
-        pub _pad24: [u8; 8],
+        pub _pad27: [u8; 8],
     }
     const _: () = assert!(std::mem::offset_of!(Frame, viewport) == 0);
     const _: () = assert!(std::mem::offset_of!(Frame, near) == 8);
@@ -2140,24 +2148,27 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Frame, key_near) == 20);
     const _: () = assert!(std::mem::offset_of!(Frame, key_gain) == 24);
     const _: () = assert!(std::mem::offset_of!(Frame, key_reach) == 28);
-    const _: () = assert!(std::mem::offset_of!(Frame, cutoff) == 32);
-    const _: () = assert!(std::mem::offset_of!(Frame, epsilon) == 36);
-    const _: () = assert!(std::mem::offset_of!(Frame, visibility_lowpass) == 40);
-    const _: () = assert!(std::mem::offset_of!(Frame, attribute_lowpass) == 44);
-    const _: () = assert!(std::mem::offset_of!(Frame, kernel_a) == 48);
-    const _: () = assert!(std::mem::offset_of!(Frame, kernel_n) == 52);
-    const _: () = assert!(std::mem::offset_of!(Frame, background) == 64);
-    const _: () = assert!(std::mem::offset_of!(Frame, albedo) == 80);
-    const _: () = assert!(std::mem::offset_of!(Frame, radiance) == 96);
-    const _: () = assert!(std::mem::offset_of!(Frame, ambient) == 160);
-    const _: () = assert!(std::mem::offset_of!(Frame, specular) == 164);
-    const _: () = assert!(std::mem::offset_of!(Frame, shininess) == 168);
-    const _: () = assert!(std::mem::offset_of!(Frame, pixel_filter) == 172);
-    const _: () = assert!(std::mem::offset_of!(Frame, edl) == 176);
-    const _: () = assert!(std::mem::offset_of!(Frame, ao) == 180);
-    const _: () = assert!(std::mem::offset_of!(Frame, pixel_width) == 184);
-    const _: () = assert!(std::mem::offset_of!(Frame, origin) == 192);
-    const _: () = assert!(std::mem::size_of::<Frame>() == 208);
+    const _: () = assert!(std::mem::offset_of!(Frame, key_offset) == 32);
+    const _: () = assert!(std::mem::offset_of!(Frame, key_at_zero) == 40);
+    const _: () = assert!(std::mem::offset_of!(Frame, distance_offset) == 44);
+    const _: () = assert!(std::mem::offset_of!(Frame, cutoff) == 48);
+    const _: () = assert!(std::mem::offset_of!(Frame, epsilon) == 52);
+    const _: () = assert!(std::mem::offset_of!(Frame, visibility_lowpass) == 56);
+    const _: () = assert!(std::mem::offset_of!(Frame, attribute_lowpass) == 60);
+    const _: () = assert!(std::mem::offset_of!(Frame, kernel_a) == 64);
+    const _: () = assert!(std::mem::offset_of!(Frame, kernel_n) == 68);
+    const _: () = assert!(std::mem::offset_of!(Frame, background) == 80);
+    const _: () = assert!(std::mem::offset_of!(Frame, albedo) == 96);
+    const _: () = assert!(std::mem::offset_of!(Frame, radiance) == 112);
+    const _: () = assert!(std::mem::offset_of!(Frame, ambient) == 176);
+    const _: () = assert!(std::mem::offset_of!(Frame, specular) == 180);
+    const _: () = assert!(std::mem::offset_of!(Frame, shininess) == 184);
+    const _: () = assert!(std::mem::offset_of!(Frame, pixel_filter) == 188);
+    const _: () = assert!(std::mem::offset_of!(Frame, edl) == 192);
+    const _: () = assert!(std::mem::offset_of!(Frame, ao) == 196);
+    const _: () = assert!(std::mem::offset_of!(Frame, pixel_width) == 200);
+    const _: () = assert!(std::mem::offset_of!(Frame, origin) == 208);
+    const _: () = assert!(std::mem::size_of::<Frame>() == 224);
 
     /// `Group`, 16 bytes, first in `shaders-glsl/cull.glsl`.
     #[repr(C)]
@@ -2346,24 +2357,27 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(ScreenClip, second) == 16);
     const _: () = assert!(std::mem::size_of::<ScreenClip>() == 32);
 
-    /// `Seed`, 20 bytes, first in `shaders-glsl/seed.glsl`.
+    /// `Seed`, 24 bytes, first in `shaders-glsl/seed.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Seed {
         /// Byte 0.
         pub key: [f32; 2],
         /// Byte 8.
-        pub resolution: f32,
+        pub key_offset: f32,
         /// Byte 12.
-        pub rounding: f32,
+        pub resolution: f32,
         /// Byte 16.
+        pub rounding: f32,
+        /// Byte 20.
         pub behind: f32,
     }
     const _: () = assert!(std::mem::offset_of!(Seed, key) == 0);
-    const _: () = assert!(std::mem::offset_of!(Seed, resolution) == 8);
-    const _: () = assert!(std::mem::offset_of!(Seed, rounding) == 12);
-    const _: () = assert!(std::mem::offset_of!(Seed, behind) == 16);
-    const _: () = assert!(std::mem::size_of::<Seed>() == 20);
+    const _: () = assert!(std::mem::offset_of!(Seed, key_offset) == 8);
+    const _: () = assert!(std::mem::offset_of!(Seed, resolution) == 12);
+    const _: () = assert!(std::mem::offset_of!(Seed, rounding) == 16);
+    const _: () = assert!(std::mem::offset_of!(Seed, behind) == 20);
+    const _: () = assert!(std::mem::size_of::<Seed>() == 24);
 
     /// `Splat`, 64 bytes, first in `shaders-glsl/footprint.glsl`.
     #[repr(C)]

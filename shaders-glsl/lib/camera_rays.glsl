@@ -55,13 +55,13 @@ float depth_at(Sample s, vec2 centre, vec2 e) {
     float from = dot(s.normal, ray_step(centre)), hit;
     if (PERSPECTIVE) {
         float rise = dot(s.normal, view.ray_hi[0].xyz * e.x + view.ray_hi[1].xyz * e.y) / view.near;
-        hit = s.depth * from / (from + rise);
+        hit = DISTANT ? s.depth - from_eye(s.depth) * (rise / (from + rise)) : s.depth * from / (from + rise);
         // Beyond the plane's horizon: the greatest distance.
-        if (!(hit > 0.0)) hit = 1e38;
+        if (!(from_eye(hit) > 0.0)) hit = 1e38;
     } else {
         hit = s.depth - dot(s.normal, view.ray_hi[0].xyz * e.x + view.ray_hi[1].xyz * e.y) / (view.key_slope * from);
     }
-    float reach = s.radius / focal_scale() * (PERSPECTIVE ? s.depth : 1.0);
+    float reach = s.radius / focal_scale() * (PERSPECTIVE ? from_eye(s.depth) : 1.0);
     return clamp(hit, s.depth - reach, s.depth + reach);
 }
 
@@ -74,9 +74,9 @@ const float END_ON = 1e-4;
 // enough up to 60° from the image plane. The normal is that of the point, or of the outline for rays that miss.
 float on_tube(Sample s, vec2 at, vec2 e, out vec3 normal) {
     vec3 tangent = s.normal, to_eye = to_eye_at(at);
-    float radius = max(s.radius, THIN) / focal_scale() * (PERSPECTIVE ? s.depth : 1.0);
+    float radius = max(s.radius, THIN) / focal_scale() * (PERSPECTIVE ? from_eye(s.depth) : 1.0);
     // From the axis to the ray, at the axis's distance.
-    float reach = PERSPECTIVE ? s.depth / view.near : 1.0 / view.key_slope;
+    float reach = PERSPECTIVE ? from_eye(s.depth) / view.near : 1.0 / view.key_slope;
     vec3 offset = reach * (view.ray_hi[0].xyz * e.x + view.ray_hi[1].xyz * e.y);
     offset -= dot(offset, tangent) * tangent;
     vec3 eye = to_eye - dot(to_eye, tangent) * tangent;

@@ -87,7 +87,8 @@ float clip_rank(float distance) {
     return distance >= 0.0 ? 1.0 : 0.0;
 }
 
-// κ for depth tests.
+// κ for depth tests: above 0, which marks empty pixels.
 float ranked(float key, float rank) {
+    key = least_tested(key);
     return BEYOND_CLIPS ? rank * key : key;
 }

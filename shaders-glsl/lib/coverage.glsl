@@ -34,7 +34,7 @@ uint coverage_mask(Ellipse solid, float least_key, vec2 pixel) {
     vec3 nearness = vec3(1.0, 0.0, 0.0);
     vec3 plane = vec3(0.0);
     if (on_plane() || CURVATURES) plane = vec3(plane_at(solid.plane_hi, solid.plane_lo, d), solid.plane_hi.yz);
-    if (on_plane()) nearness = plane / solid.key_centre;
+    if (on_plane()) nearness = vec3(inverse_depth(plane.x), plane.yz) / inverse_depth(solid.key_centre);
     uint mask = 0;
     for (uint k = 0; k < SAMPLES; k++) {
         vec2 s = sample_position(k);

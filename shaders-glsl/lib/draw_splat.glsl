@@ -70,7 +70,7 @@ void write_splat_vertex(uint i, Splat splat, vec2 variance, int corner) {
         vec2 pixel = corner_about(ellipse.anchor + splat.offset, splat.axis, reach, corner);
         position = 2.0 * pixel / frame.viewport - 1.0;
     }
-    gl_Position = vec4(position, nearest, 1.0);
+    gl_Position = vec4(position, least_tested(nearest), 1.0);
 }
 
 #endif

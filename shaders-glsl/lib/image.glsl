@@ -108,7 +108,9 @@ Image image_of_sprite(Disc disc, float sigma) {
     vec2 extra = disc.aspect * sqrt((cosine - abs(across)) * (cosine + abs(across))) * flat_pixel(lean);
     // |V| is the sum of the squares of all 2×2 minors (Cauchy and Binet); the first is known in closed form.
     vec2 minors = vec2(s.x, t.x) * extra.y - vec2(s.y, t.y) * extra.x;
-    float area = length(vec3(view.jacobian * disc.aspect * abs(across), minors));
+    float first = view.jacobian * disc.aspect * abs(across), largest = max(first, max(abs(minors.x), abs(minors.y)));
+    // From far away, squares of minors overflow.
+    float area = largest > 0.0 ? largest * length(vec3(first, minors) / largest) : 0.0;
     float size = sigma / disc.w.x * whole;
     float sqrt_det = size * size * area;
     vec3 Dx = size * vec3(s.x, t.x, extra.x);

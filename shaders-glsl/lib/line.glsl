@@ -65,7 +65,7 @@ vec3 normalize_or(vec3 v, vec3 fallback) {
 }
 
 float half_width(Vertex v) {
-    return focal_scale() * v.radius / (PERSPECTIVE ? v.distance : 1.0);
+    return focal_scale() * v.radius / (PERSPECTIVE ? from_eye(v.distance) : 1.0);
 }
 
 // Loads the part of segment i beyond the near plane; false if there is none.
@@ -134,7 +134,7 @@ bool clip_to_viewport(inout End from, inout End to) {
         float side = (k & 1) == 0 ? -MARGIN : frame.viewport[k >> 1] + MARGIN;
         float sign = (k & 1) == 0 ? 1.0 : -1.0;
         float x0 = pixel_row(k >> 1, from.line_hi, from.line_lo).x, x1 = pixel_row(k >> 1, to.line_hi, to.line_lo).x;
-        float w0 = PERSPECTIVE ? from.line_distance : 1.0, w1 = PERSPECTIVE ? to.line_distance : 1.0;
+        float w0 = PERSPECTIVE ? from_eye(from.line_distance) : 1.0, w1 = PERSPECTIVE ? from_eye(to.line_distance) : 1.0;
         float f0 = sign * (x0 - side * w0), f1 = sign * (x1 - side * w1);
         if (max(f0, f1) < 0.0) return false;
         if (f0 < 0.0) first = max(first, f0 / (f0 - f1));
@@ -191,7 +191,7 @@ bool strand_point(Segment segment, Strand s, int column, out StrandPoint point) 
     point.pixel[s.steep] = column;
     point.pixel[across] = int(floor(clamp(s.start[across] + t * s.extent[across], -1.0, frame.viewport[across])));
     point.weights = vec2(1.0 - t, t);
-    if (PERSPECTIVE) point.weights /= vec2(s.from.line_distance, s.to.line_distance);
+    if (PERSPECTIVE) point.weights /= vec2(from_eye(s.from.line_distance), from_eye(s.to.line_distance));
     point.weights /= point.weights.x + point.weights.y;
     float distance = dot(point.weights, vec2(s.from.line_distance, s.to.line_distance));
     float radius = dot(point.weights, vec2(s.from.vertex.radius, s.to.vertex.radius));
@@ -209,7 +209,7 @@ Sample sample_at(Segment segment, Strand s, StrandPoint point) {
     // A ribbon is two-sided; the tangent of a tube has no sign.
     if (!segment.tube && facing_of(weights.x * a.hi + weights.y * b.hi, direction) > 0.0) direction = -direction;
     float radius = dot(weights, vec2(a.radius, b.radius));
-    vec2 on_screen = PERSPECTIVE ? weights * vec2(a.distance, b.distance) / distance : weights;
+    vec2 on_screen = PERSPECTIVE ? weights * vec2(from_eye(a.distance), from_eye(b.distance)) / from_eye(distance) : weights;
     vec2 screen = on_screen.x * s.disc_centres.xy + on_screen.y * s.disc_centres.zw;
     Sample disc = disc_sample(vec2(point.pixel) + 0.5, screen, point.nearest, distance, radius, direction, segment.tube);
     disc.colour = weights.x * a.colour + weights.y * b.colour;

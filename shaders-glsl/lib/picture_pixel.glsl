@@ -31,7 +31,7 @@ Pixel normalize_pixel(vec2 centre, bool visible, float alpha, vec4 s0, vec4 s1) 
     float depth = 0.0;
     if (SUM_DEPTH) {
         float key = s1.x / (s0.x * frame.key_gain);
-        depth = PERSPECTIVE ? view.near / key : view.distance_offset + (view.near + (1.0 - key) / view.key_slope);
+        depth = PERSPECTIVE ? view.near / inverse_depth(key) : view.distance_offset + (view.near + (1.0 - key) / view.key_slope);
     }
 
     vec3 shaded;

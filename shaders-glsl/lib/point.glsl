@@ -38,10 +38,10 @@ uint point_of(uint i, out Point point) {
     if (HAS_LEVELS && !is_of_drawn_level(chunk.first_id + i, p)) return LEVEL;
     vec2 dx = two_sum(p.x, -view.eye_hi.x), dy = two_sum(p.y, -view.eye_hi.y), dz = two_sum(p.z, -view.eye_hi.z);
     vec3 hi = vec3(dx.x, dy.x, dz.x), lo = vec3(dx.y, dy.y, dz.y) - view.eye_lo.xyz;
-    float z = dot_double(hi, lo, view.forward_hi.xyz, view.forward_lo.xyz).x;
+    float z = counted_distance(dot_double(hi, lo, view.forward_hi.xyz, view.forward_lo.xyz)).x;
     // Written so that NaN fails the test.
     if (!(z >= view.near && z > 0.0)) return BEHIND;
-    if ((PERSPECTIVE ? view.near / z : 1.0 - (z - view.near) * view.key_slope) < frame.key_far) return BEHIND;
+    if (key_at_distance(z) < frame.key_far) return BEHIND;
     point.distance = z;
     point.facing = (PERSPECTIVE ? dot_double(hi, lo, n, vec3(0.0)) : dot_double(n, vec3(0.0), view.forward_hi.xyz, view.forward_lo.xyz)).x;
     if (CULL_BACK && !is_two_sided(i) && point.facing >= 0.0) return BACK;

@@ -21,7 +21,7 @@ struct Vertex {
 };
 
 float distance_of(vec3 hi, vec3 lo) {
-    return dot_double(hi, lo, view.forward_hi.xyz, view.forward_lo.xyz).x;
+    return counted_distance(dot_double(hi, lo, view.forward_hi.xyz, view.forward_lo.xyz)).x;
 }
 
 DEFINE_COLOURS(vertex_colour, VERTEX_COLOURS, vertex_colours, 0, colour_words(VERTEX_COLOURS))
@@ -51,7 +51,7 @@ vec2 screen_of(vec3 hi, vec3 lo) {
 }
 
 bool is_beyond_far(float distance) {
-    return (PERSPECTIVE ? view.near / distance : 1.0 - (distance - view.near) * view.key_slope) < frame.key_far;
+    return key_at_distance(distance) < frame.key_far;
 }
 
 // Below 0 if a plane with this normal, at a position relative to the eye, faces it.
@@ -66,7 +66,7 @@ Sample disc_sample(vec2 centre, vec2 screen, float nearest, float distance, floa
     s.near = nearest;
     s.far = distance + (PAPER || tube ? 1.0 : 2.0) * radius;
     s.depth = distance;
-    s.radius = focal_scale() * radius / (PERSPECTIVE ? distance : 1.0);
+    s.radius = focal_scale() * radius / (PERSPECTIVE ? from_eye(distance) : 1.0);
     s.displacement = PAPER ? vec2(0.0) : screen - centre;
     s.normal = dot(direction, direction) > 0.0 ? normalize(direction) : vec3(0.0);
     s.tube = tube;

@@ -68,7 +68,7 @@ const float BEHIND_BESIDE = 8.0;
 // Whether a disc of level 0 is the surface that faces the eye beside it, past an outline.
 bool is_past_outline(Sample s, vec2 beside) {
     if (!CULL_AUTO || pass.level > 0 || !s.back) return false;
-    float width = (PERSPECTIVE ? s.near : 1.0) / focal_scale(), least = s.near - BEHIND_BESIDE * sqrt(max(s.radius, 1.0)) * width;
+    float width = (PERSPECTIVE ? from_eye(s.near) : 1.0) / focal_scale(), least = s.near - BEHIND_BESIDE * sqrt(max(s.radius, 1.0)) * width;
     return beside.x >= least && beside.x <= s.far || beside.y >= least && beside.y <= s.far;
 }
 

@@ -20,7 +20,8 @@ struct Splat {
     float variance;      // V's larger eigenvalue, px²
     float detail;        // CONFETTI: angle from `axis`, which is rounded, to V's axis, rad; CURVATURES: see least_key; otherwise 0
     uint anchor;         // packed anchor pixel, DRAWN_SPLAT and BACK_SPLAT: see pack_anchor
-    float epsilon;       // perspective: 1 / (1 + ε/z), a factor of κ; orthographic: ε as a difference of κ; negative if the normal faces away
+    float epsilon;       // perspective: 1 / (1 + ε/z), a factor of κ, or DISTANT: what it is short of 1; orthographic: ε as a difference of κ;
+                         // negative if the normal faces away
     vec3 plane_hi;       // κ of the tangent plane (has_linear_depth: distance) at the anchor, and its derivatives along x and y, per px, as
                          // sums of two floats
     float sqrt_det;      // √|V|, px²
@@ -137,7 +138,7 @@ float stretch_of(Splat splat, vec2 variance, float key_centre) {
     if (!on_plane()) return rim();
     vec2 minor_axis = vec2(-splat.axis.y, splat.axis.x);
     vec2 slope = vec2(dot(splat.plane_hi.yz, splat.axis), dot(splat.plane_hi.yz, minor_axis)) * sqrt(variance);
-    float rise = rim() * frame.cutoff * length(slope) / key_centre;
+    float rise = rim() * frame.cutoff * length(slope) / inverse_depth(key_centre);
     // Rounding is far below the margin.
     return rim() * min(MOST_STRETCH, 1.0001 / max(1.0 - rise, 0.5));
 }
@@ -262,24 +263,16 @@ vec2 fine_kernel_coordinates(Ellipse ellipse, vec2 d) {
                 plane_at(vec3(ellipse.fine[1].x, ellipse.whitening.zw), ellipse.fine[1].yzw, d));
 }
 
-// Distance of the near plane in the unit of the fragment's plane.
-float fragment_near() {
-#if defined(FRAGMENT) || defined(TILE_PASS)
-    return frame.near;
-#else
-    return view.near;
-#endif
-}
-
 // Whether the splat has a fragment at a pixel centre: inside the rim, not clipped, and the plane within the depth range. m: kernel
 // coordinates along the ellipse's axes, σ; key: κ of the plane; rank: see clip_rank.
 bool splat_fragment(Ellipse ellipse, vec2 pixel, out vec2 m, out float key, out float rank) {
     vec2 d = pixel - ellipse.anchor;
     m = CONFETTI ? fine_kernel_coordinates(ellipse, d) : kernel_coordinates(ellipse, d);
     key = plane_at(ellipse.plane_hi, ellipse.plane_lo, d);
-    if (has_linear_depth()) key = key > 0.0 ? fragment_near() / key : 2.0;
+    // Fragments read distances in the world's unit.
+    if (has_linear_depth()) key = world_key(key);
     // A homography that fixes the centre is affine up to the plane's distance.
-    if (on_plane()) m /= clamp(key / ellipse.key_centre, 1.0 / MOST_STRETCH, MOST_STRETCH);
+    if (on_plane()) m /= clamp(inverse_depth(key) / inverse_depth(ellipse.key_centre), 1.0 / MOST_STRETCH, MOST_STRETCH);
     bool inside =
         rim() > 1.0 ? max(abs(m.x), abs(m.y)) <= frame.cutoff : dot(m, m) <= frame.cutoff * frame.cutoff;
     rank = 1.0;
@@ -297,7 +290,7 @@ float nearest_of(Splat splat, vec2 variance, float stretch) {
     float centre = splat.plane_hi.x + dot(splat.plane_hi.yz, splat.offset);
     // Above the rounding errors of these terms and of a fragment's κ.
     float margin = 1e-6 * (abs(splat.plane_hi.x) + abs(centre) + rise) + 1e-30;
-    if (has_linear_depth()) return view.near / max(centre - rise - margin, 1e-30);
+    if (has_linear_depth()) return key_at_distance(max(centre - rise - margin, DISTANT ? -0.5 * view.distance_offset : 1e-30));
     return centre + rise + margin;
 }
 #endif
@@ -305,7 +298,13 @@ float nearest_of(Splat splat, vec2 variance, float stretch) {
 // κ of the depth that a fragment shows. The low-pass widens a disc over which its plane extends in front of it: by little where the plane
 // is that of the surface, far where the disc is seen edge-on.
 float shown_key(float key, float key_disc) {
+    if (DISTANT) return min(key, key_disc + frame.key_reach * inverse_depth(key_disc));
     return min(key, PERSPECTIVE ? frame.key_reach * key_disc : key_disc + frame.key_reach);
+}
+
+// ε of a splat relative to its distance, in perspective.
+float relative_epsilon(float epsilon) {
+    return DISTANT ? abs(epsilon) / (1.0 - abs(epsilon)) : 1.0 / abs(epsilon) - 1.0;
 }
 
 // κ that a fragment writes to visibility: moved away from the eye along the ray by the splat's ε, which divides it by 1 + ε/z. Never 0,
@@ -315,5 +314,6 @@ float shown_key(float key, float key_disc) {
 // it, and rims of hidden surfaces would show as dark lines.
 float visibility_key(float key, float key_disc, float epsilon) {
     key = min(key, key_disc);
-    return PERSPECTIVE ? key * abs(epsilon) : max(key - abs(epsilon), 1e-6);
+    if (DISTANT) return least_tested(key - inverse_depth(key) * abs(epsilon));
+    return PERSPECTIVE ? key * abs(epsilon) : least_tested(key - abs(epsilon));
 }

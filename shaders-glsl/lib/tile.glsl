@@ -199,8 +199,8 @@ float clip_distance(TileSplat splat, vec2 d) {
 bool tile_fragment(TileSplat splat, vec2 d, out vec2 m, out float key, out float rank) {
     m = value_at(splat.kernel, d);
     key = value_at(splat.plane, d);
-    if (has_linear_depth()) key = key > 0.0 ? frame.near / key : 2.0;
-    if (on_plane()) m /= clamp(key / splat.key_centre, 1.0 / MOST_STRETCH, MOST_STRETCH);
+    if (has_linear_depth()) key = world_key(key);
+    if (on_plane()) m /= clamp(inverse_depth(key) / inverse_depth(splat.key_centre), 1.0 / MOST_STRETCH, MOST_STRETCH);
     bool inside =
         rim() > 1.0 ? max(abs(m.x), abs(m.y)) <= frame.cutoff : dot(m, m) <= frame.cutoff * frame.cutoff;
     rank = 1.0;

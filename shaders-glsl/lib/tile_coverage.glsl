@@ -130,7 +130,8 @@ uint sample_columns(TileSplat solid, Turn turn, vec2 d) {
         for (uint x = 0; x < TILE; x++) {
             vec2 at = d + vec2(x, 0.0);
             vec2 u = value_at(solid.kernel, at);
-            u /= clamp(value_at(solid.plane, at) / solid.key_centre, 1.0 / MOST_STRETCH, MOST_STRETCH);
+            float nearness = inverse_depth(value_at(solid.plane, at)) / inverse_depth(solid.key_centre);
+            u /= clamp(nearness, 1.0 / MOST_STRETCH, MOST_STRETCH);
             bool inside = rim() > 1.0 ? max(abs(u.x), abs(u.y)) <= limit : dot(u, u) <= limit * limit;
             mask |= uint(inside) << x;
         }

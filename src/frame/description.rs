@@ -72,7 +72,9 @@ pub fn describe(
     let options = RenderOptions { precision, ..*options };
     let streams: Vec<_> = scenes.iter().map(|placed| placed.scene.streams()).collect();
     let variant = Variant::new(&streams, perspective, settings, &options, rasterizer);
-    let variant = Variant { workgroup: workgroup.unwrap_or_default(), ..variant }.with_slices(sliced);
+    let distant = uniforms.is_distant();
+    let variant =
+        Variant { distant, workgroup: workgroup.unwrap_or_default(), ..variant }.with_slices(sliced);
     check_lookups(&variant, scenes)?;
     let instanced = !uniforms.instances.is_empty();
     let scenes = streams.into_iter().map(|streams| SceneVariant::new(variant, streams, instanced)).collect();

@@ -45,19 +45,23 @@ impl Uniforms {
         };
         let origin = single_origin.unwrap_or_default();
         let sure = scenes.iter().map(Placed::sure_bounds).reduce(|all, bounds| Some(all?.with(&bounds?)));
-        let depths = DepthRange::new(camera, sure.flatten().as_ref())?;
+        let depths = DepthRange::new(camera, size, sure.flatten().as_ref())?;
         let (rays, projection) = camera_rays(camera, size, &depths, 1.0)?;
-        let mut view = view(&rays, &projection, origin);
-        view.distance_offset = depths.offset as f32;
+        let mut view = view(&rays, &projection, &depths.in_unit(1.0), origin);
         apply_placement(&mut view, settings, &Similarity::IDENTITY);
         let table = scenes.first().and_then(|placed| placed.scene.level_table());
         apply_levels(&mut view, settings, table);
-        let frame = frame(settings, size, (&rays, &projection, depths.clip), bounds.as_ref());
+        let frame = frame(settings, size, (&rays, &projection, &depths), bounds.as_ref());
         let instanced = if single_origin.is_some() { &[] } else { scenes };
         let instances = instanced.iter().zip(first_ids(scenes));
         let instances =
             instances.map(|(placed, first)| instance_view((camera, &depths), settings, size, placed, first));
         Ok(Self { frame, view, instances: instances.collect::<Result<_>>()? })
+    }
+
+    /// Whether the camera is in perspective, and the scenes are far away in a narrow field of view.
+    pub fn is_distant(&self) -> bool {
+        self.frame.key_offset != [0.0; 2]
     }
 
     /// Contents of the uniform buffer of a frame.
@@ -80,7 +84,7 @@ fn instance_view(
     let placement = placed.placement.unwrap_or(Similarity::IDENTITY);
     let camera = placed.placement.map_or(*camera, |placement| placement.seen_by(camera));
     let (rays, projection) = camera_rays(&camera, size, depths, placement.scale())?;
-    let mut view = view(&rays, &projection, placed.scene.origin());
+    let mut view = view(&rays, &projection, &depths.in_unit(placement.scale()), placed.scene.origin());
     view.first_id = first;
     apply_placement(&mut view, settings, &placement);
     apply_levels(&mut view, settings, placed.scene.level_table());
@@ -113,20 +117,22 @@ fn apply_placement(view: &mut View, settings: &Settings, placement: &Similarity)
     }
 }
 
-/// The view for positions relative to `origin`.
-fn view(rays: &CameraRays, projection: &Projection, origin: DVec3) -> View {
+/// The view for positions relative to `origin`, of distances in the same unit.
+fn view(rays: &CameraRays, projection: &Projection, depths: &DepthRange, origin: DVec3) -> View {
     let mut view = View::zeroed();
     for (i, row) in rays.rows.into_iter().enumerate() {
         [view.rows_hi[i], view.rows_lo[i]] = split(row);
     }
-    [view.eye_hi, view.eye_lo] = split((rays.eye - origin).extend(0.0));
-    [view.forward_hi, view.forward_lo] = split(rays.forward.extend(0.0));
+    let key = DepthKey::new(projection, depths);
+    [view.eye_hi, view.eye_lo] = split((rays.eye - origin).extend(key.at_zero(depths)));
+    let counted_from = if depths.is_distant(projection) { depths.offset } else { 0.0 };
+    [view.forward_hi, view.forward_lo] = split(rays.forward.extend(-counted_from));
+    view.distance_offset = depths.offset as f32;
     for (i, row) in rays.rows.iter().take(2).enumerate() {
         let row = row.truncate();
         let flat = row - row.dot(rays.forward) * rays.forward;
         view.flat_rows[i][..3].copy_from_slice(&flat.as_vec3().to_array());
     }
-    let key = DepthKey::new(projection);
     for (i, column) in key.rays(rays, projection).into_iter().enumerate() {
         [view.ray_hi[i], view.ray_lo[i]] = split(column.extend(0.0));
     }
@@ -140,18 +146,22 @@ fn view(rays: &CameraRays, projection: &Projection, origin: DVec3) -> View {
 fn frame(
     settings: &Settings,
     size: [u32; 2],
-    (rays, projection, clip): (&CameraRays, &Projection, [f64; 2]),
+    (rays, projection, depths): (&CameraRays, &Projection, &DepthRange),
     bounds: Option<&Bounds>,
 ) -> Frame {
     let mut frame = Frame::zeroed();
-    let key = DepthKey::new(projection);
+    let key = DepthKey::new(projection, depths);
     frame.viewport = size.map(|side| side as f32);
     frame.near = projection.near as f32;
     frame.key_slope = key.slope as f32;
-    [frame.key_near, frame.key_far] = key.of_planes(projection, clip).map(|key| key as f32);
+    [frame.key_near, frame.key_far] = key.of_planes(projection, depths).map(|key| key as f32);
     let distance = bounds.map_or(projection.near, |bounds| rays.distance(bounds.centre()));
-    frame.key_gain = key.gain(projection, distance) as f32;
+    frame.key_gain = key.gain(projection, depths, distance) as f32;
     frame.key_reach = key.reach(rays, projection) as f32;
+    let [hi, lo] = split(DVec4::splat(key.offset));
+    frame.key_offset = [hi[0], lo[0]];
+    frame.key_at_zero = key.at_zero(depths) as f32;
+    frame.distance_offset = depths.offset as f32;
     frame.cutoff = settings.cutoff;
     frame.epsilon = settings.epsilon;
     if let Kernel::Confetti { a, n } = settings.splatting.kernel {
@@ -192,8 +202,9 @@ fn camera_rays(
     Ok((rays, Projection { near, far, ..projection }))
 }
 
-/// Distances of a frame, world units. With parallel rays they are counted from a plane near the scenes, and the near and far planes are moved
-/// to them, so that float32 resolves depths relative to the scenes, wherever the eye and the camera's own planes are.
+/// Distances of a frame. With parallel rays, and in perspective if the scenes are far away in a narrow field of view, they are counted from a
+/// plane near the scenes, and the near and far planes are moved to them, so that float32 resolves depths relative to the scenes, wherever the
+/// eye and the camera's own planes are.
 struct DepthRange {
     /// Distance of that plane from the eye.
     offset: f64,
@@ -206,17 +217,26 @@ struct DepthRange {
 /// Distance of the planes from the middle of the scenes, in radii of their bounding sphere: edge-on discs that the low-pass widens have
 /// fragments far in front of and behind them.
 const PLANES: f64 = 4.0;
+/// Least distance of the middle of scenes that are far away, likewise.
+const DISTANT: f64 = 10.0;
+/// Largest width of a pixel in a narrow field of view, relative to the distance: float32 rounds distances by 1/4000 of that or more.
+const NARROW: f64 = 1.0 / 4000.0;
 
 impl DepthRange {
     /// The range for scenes with these bounds; the camera's own without any.
-    fn new(camera: &Camera, bounds: Option<&Bounds>) -> Result<Self> {
+    fn new(camera: &Camera, size: [u32; 2], bounds: Option<&Bounds>) -> Result<Self> {
         let projection = camera.projection()?;
         let clip = [projection.near, projection.far];
         let own = Self { offset: 0.0, planes: None, clip };
-        let Some(bounds) = bounds.filter(|bounds| !projection.perspective && bounds.radius > 0.0) else {
+        let Some(bounds) = bounds.filter(|bounds| bounds.radius > 0.0) else {
             return Ok(own);
         };
         let middle = projection.forward * camera.view.transform_point3(bounds.centre()).z;
+        let pixel_width = CameraRays::new(camera, &projection, size, 0.0)?.pixel_width();
+        let is_distant = middle >= DISTANT * bounds.radius && pixel_width <= NARROW;
+        if projection.perspective && !is_distant {
+            return Ok(own);
+        }
         let reach = PLANES * bounds.radius;
         let (near, far) = (projection.near.max(middle - reach), projection.far.min(middle + reach));
         if near >= far {
@@ -226,6 +246,22 @@ impl DepthRange {
         let offset = (near - (far - near)).max(0.0);
         let counted = |plane: f64| plane - offset;
         Ok(Self { offset, planes: Some([near, far].map(counted)), clip: clip.map(counted) })
+    }
+
+    /// The range in a unit of `unit` world units.
+    fn in_unit(&self, unit: f64) -> Self {
+        let in_unit = |distances: [f64; 2]| distances.map(|distance| distance / unit);
+        Self { offset: self.offset / unit, planes: self.planes.map(in_unit), clip: in_unit(self.clip) }
+    }
+
+    /// Whether distances of a camera in perspective are not counted from the eye.
+    fn is_distant(&self, projection: &Projection) -> bool {
+        projection.perspective && self.planes.is_some()
+    }
+
+    /// Distance at which κ is 0 in perspective if distances are not counted from the eye.
+    fn zero(&self) -> f64 {
+        self.planes.map_or(f64::INFINITY, |[_, far]| far)
     }
 }
 
@@ -294,25 +330,40 @@ impl CameraRays {
     }
 }
 
-/// The depth key κ: 1 at the near plane, falling with distance, affine on the screen for every plane.
+/// The depth key κ: falling with distance, affine on the screen for every plane. 1 at the near plane if distances are counted from the eye, and
+/// with parallel rays.
 struct DepthKey {
     /// Orthographic: −dκ/dz. The far plane's κ is ½, which leaves room for surfaces moved back by ε.
     slope: f64,
+    /// Perspective: near / z − κ. Above 0 if distances are not counted from the eye: then κ is 0 at the far plane, and depth tests take what is
+    /// beyond it for as far away.
+    offset: f64,
 }
 
 impl DepthKey {
-    fn new(projection: &Projection) -> Self {
-        match projection.perspective {
-            true => Self { slope: 0.0 },
+    /// The key of distances in the projection's unit.
+    fn new(projection: &Projection, depths: &DepthRange) -> Self {
+        let slope = match projection.perspective {
+            true => 0.0,
             // Rounded first, so that the rays are computed from the shaders' slope.
-            false => Self { slope: f64::from((0.5 / (projection.far - projection.near)) as f32) },
-        }
+            false => f64::from((0.5 / (projection.far - projection.near)) as f32),
+        };
+        let offset = match depths.is_distant(projection) {
+            true => projection.near / (depths.zero() + depths.offset),
+            false => 0.0,
+        };
+        Self { slope, offset }
     }
 
-    /// κ of planes at these distances.
-    fn of_planes(&self, projection: &Projection, distances: [f64; 2]) -> [f64; 2] {
-        distances.map(|distance| match projection.perspective {
-            true => projection.near / distance,
+    /// What the shaders' `key_at_zero` is.
+    fn at_zero(&self, depths: &DepthRange) -> f64 {
+        if self.offset > 0.0 { self.offset * depths.zero() } else { 0.0 }
+    }
+
+    /// κ of the camera's near and far plane.
+    fn of_planes(&self, projection: &Projection, depths: &DepthRange) -> [f64; 2] {
+        depths.clip.map(|distance| match projection.perspective {
+            true => projection.near / (distance + depths.offset) - self.offset,
             false => 1.0 - self.slope * (distance - projection.near),
         })
     }
@@ -329,14 +380,25 @@ impl DepthKey {
         }
     }
 
-    /// How much nearer than its disc a fragment's depth may be: a factor of κ in perspective, else added to it.
+    /// How much nearer than its disc a fragment's depth may be, as the shaders' `key_reach`.
     fn reach(&self, rays: &CameraRays, projection: &Projection) -> f64 {
         let reach = Settings::MOST_RISE * rays.pixel_width();
-        if projection.perspective { 1.0 + reach } else { self.slope * reach }
+        match projection.perspective {
+            true if self.offset > 0.0 => reach,
+            true => 1.0 + reach,
+            false => self.slope * reach,
+        }
     }
 
-    /// Inverse of κ at `distance`, so that their product is near 1 at the scene.
-    fn gain(&self, projection: &Projection, distance: f64) -> f64 {
-        if projection.perspective { distance.max(projection.near) / projection.near } else { 1.0 }
+    /// Inverse of κ at a distance from the eye, or halfway between the planes near the scene, so that their product is near 1 at the scene.
+    fn gain(&self, projection: &Projection, depths: &DepthRange, distance: f64) -> f64 {
+        match projection.perspective {
+            true if self.offset > 0.0 => {
+                let halfway = depths.offset + 0.5 * (projection.near + depths.zero());
+                1.0 / (projection.near / halfway - self.offset)
+            }
+            true => distance.max(projection.near) / projection.near,
+            false => 1.0,
+        }
     }
 }

@@ -15,6 +15,8 @@ use crate::vk::shaders::{Resource, constant, resource};
 pub struct Variant {
     /// Perspective or orthographic.
     pub perspective: bool,
+    /// The camera is in perspective, and the scenes are far away in a narrow field of view: depths are relative to a plane near them.
+    pub distant: bool,
     /// Back faces are culled.
     pub cull_back: bool,
     /// Pass sides culls some back faces.
@@ -199,6 +201,7 @@ impl Variant {
         let lit_pixels = shading == Shading::Lit && !shade_splats;
         Self {
             perspective,
+            distant: false,
             cull_back: settings.cull == Cull::Back,
             cull_auto: settings.finds_sides(),
             footprint: splatting.footprint,
@@ -335,6 +338,7 @@ impl Variant {
     pub fn constants(&self) -> Constants {
         Constants::default()
             .with(constant::PERSPECTIVE, self.perspective)
+            .with(constant::DISTANT, self.distant)
             .with(constant::CULL_BACK, self.cull_back)
             .with(constant::CULL_AUTO, self.cull_auto)
             .with(constant::COVERAGE, self.coverage)

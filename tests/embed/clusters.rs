@@ -108,7 +108,8 @@ fn renderer(device: &Arc<Device>) -> Renderer {
     .unwrap()
 }
 
-/// The scene with bounds that were set: parallel rays then resolve depths between the camera's planes, as of a host's buffers.
+/// The scene with bounds that were set: parallel rays then resolve depths between the camera's planes, and narrow views relative to the eye, as of
+/// a host's buffers.
 fn with_planes_of_cameras(scene: Scene) -> Scene {
     scene.set_bounds(scene.bounds()).unwrap();
     scene
@@ -234,7 +235,7 @@ fn clusters_of_instances_are_culled_one_by_one() {
 fn updates_move_the_bounds_of_clusters() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let mut surfels = surfels();
-    let own = Scene::upload(&device, &surfels).unwrap();
+    let own = with_planes_of_cameras(Scene::upload(&device, &surfels).unwrap());
     let mut renderer = renderer(&device);
     let settings = Settings { cull: Cull::Back, ..splats_alone() };
     let all: Vec<_> = cameras();

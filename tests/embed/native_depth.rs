@@ -12,7 +12,7 @@ use ash::vk;
 use glam::{DMat4, DVec3, Vec3};
 use surfel::embed::View;
 use surfel::embed::native::Renderer;
-use surfel::geometry::Surfels;
+use surfel::geometry::{Camera, Surfels};
 use surfel::settings::Alpha;
 use surfel::{Rasterizer, Settings};
 
@@ -21,6 +21,12 @@ fn plane() -> (DVec3, [DVec3; 2]) {
     let (centre, sides) =
         (DVec3::new(0.1, 0.05, 0.2), [DVec3::new(1.4, 0.2, 0.1), DVec3::new(0.0, 0.3, -1.1)]);
     (centre, [sides[0], sides[1] - sides[1].dot(sides[0]) / sides[0].length_squared() * sides[0]])
+}
+
+/// From a thousand times as far away, in a field of view in which the sphere is as large.
+fn distant() -> Camera {
+    let eye = 1e3 * DVec3::new(1.1, 0.9, 3.0);
+    Camera::look_at(eye, DVec3::ZERO, DVec3::Y, 0.8e-3, 4.0 / 3.0, 0.1).unwrap()
 }
 
 /// The composite's picture of the same scene.
@@ -48,16 +54,25 @@ fn among_the_hosts_surfaces_the_picture_is_the_composites_and_the_references() {
     let (centre, sides) = plane();
     let corners = parallelogram(centre.as_vec3(), sides.map(|side| side.as_vec3()));
     let settings = Settings { alpha: Alpha::Mask, ..method("perspective-ewa") };
-    let reference = surfel::verify::reference::render(&surfels(), &camera(), SIZE, &settings, &()).unwrap();
+    let reference =
+        |camera| surfel::verify::reference::render(&surfels(), &camera, SIZE, &settings, &()).unwrap();
+    let references = [camera(), distant()].map(|camera| (camera, reference(camera)));
     let height = SIZE[1] as f32;
     let plain = viewport(SIZE);
     let turned = vk::Viewport { y: height, height: -height, min_depth: 0.25, max_depth: 0.75, ..plain };
     let mut up = camera();
     up.projection = DMat4::from_scale(DVec3::new(1.0, -1.0, 1.0)) * up.projection;
-    let views = [(true, camera(), plain), (false, rising(), plain), (true, up, turned)];
+    // With the reference of the same picture.
+    let [near, far] = &references;
+    let views = [
+        (true, camera(), plain, near),
+        (false, rising(), plain, near),
+        (true, up, turned, near),
+        (true, distant(), plain, far),
+    ];
     let alike =
         [(ONE, true), (ONE, false), (FOUR, true)].map(|(samples, seed)| Kind { samples, seed, ..PLAIN });
-    for (kind, (reversed, camera, viewport)) in
+    for (kind, (reversed, camera, viewport, (seen_by, reference))) in
         alike.into_iter().flat_map(|kind| views.map(|view| (kind, view)))
     {
         let kind = Kind { reversed, ..kind };
@@ -72,7 +87,7 @@ fn among_the_hosts_surfaces_the_picture_is_the_composites_and_the_references() {
             for (i, colour) in colours.iter().enumerate() {
                 let at = [i as u32 % SIZE[0], i as u32 / SIZE[0]];
                 let surfel = reference.covered[i].then_some(reference.depth[i]);
-                let of_host = meets(&self::camera(), at, centre, sides);
+                let of_host = meets(seen_by, at, centre, sides);
                 let is_surfel = surfel.is_some_and(|z| of_host.is_none_or(|of_host| z <= of_host));
                 let is_host = !is_surfel && of_host.is_some();
                 let found = [colour[3] > 0.0 && !is_blue(colour), is_blue(colour)];
@@ -83,7 +98,10 @@ fn among_the_hosts_surfaces_the_picture_is_the_composites_and_the_references() {
             println!("{kind:?}: {wrong} px of {} differ from the reference", colours.len());
             assert!(wrong * 1000 <= colours.len(), "{wrong} px");
         }
-        assert_eq!(count_different(&colours, &other), 0, "{kind:?} {viewport:?}");
+        // A seed may hide edge-on discs at the outline: see the guide, Accuracy.
+        let hidden = colours.iter().zip(&other).filter(|(found, other)| found != other && is_blue(found));
+        let hidden = if kind.seed && std::ptr::eq(reference, &far.1) { hidden.count() } else { 0 };
+        assert!(hidden <= 1 && count_different(&colours, &other) == hidden, "{kind:?} {viewport:?}");
         mesh.destroy(&host);
         drawn.destroy();
     }
@@ -196,13 +214,18 @@ fn count_fragments(drawn: &mut Drawn<'_>, view: &View, settings: &Settings, mesh
 #[test]
 fn splats_that_the_host_hides_are_left_out_early() {
     let Some(host) = open(|all| all) else { return };
-    let view = View::whole(camera(), SIZE);
-    // Half of the view, in front of everything.
-    let before = camera().view.inverse();
-    let centre = before.transform_point3(DVec3::new(-1.0, 0.0, 1.0)).as_vec3();
-    let sides = [DVec3::X, DVec3::Y].map(|side| before.transform_vector3(side).as_vec3());
-    let corners = parallelogram(centre, sides);
-    for name in ["perspective-ewa", "sprites-unfiltered"] {
+    for (name, camera) in [
+        ("perspective-ewa", camera()),
+        ("sprites-unfiltered", camera()),
+        ("perspective-ewa", distant()),
+        ("sprites-unfiltered", distant()),
+    ] {
+        let view = View::whole(camera, SIZE);
+        // Half of the view, in front of everything.
+        let before = camera.view.inverse();
+        let centre = before.transform_point3(DVec3::new(-1.0, 0.0, 1.0)).as_vec3();
+        let sides = [DVec3::X, DVec3::Y].map(|side| before.transform_vector3(side).as_vec3());
+        let corners = parallelogram(centre, sides);
         let settings = method(name);
         let counts = [true, false].map(|seed| {
             let kind = Kind { seed, ..PLAIN };

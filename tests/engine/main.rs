@@ -16,6 +16,7 @@ mod billboards;
 mod capture;
 mod creases;
 mod discs;
+mod distant;
 mod disturbance;
 mod edges;
 mod edl;

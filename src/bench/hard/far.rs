@@ -41,9 +41,8 @@ pub fn cases() -> [Case; 2] {
 }
 
 fn coarse(distance: f64, _: Precision) -> Option<&'static str> {
-    (distance >= 1e5).then_some(
-        "depths of float32 are 2⁻²⁴ of the distance apart, a twentieth of ε or more: splats about ε from the nearest one are taken or left",
-    )
+    (distance >= 1e7)
+        .then_some("two floats round positions by 2⁻⁴⁸ of the distance, which kernels with a steep rim show")
 }
 
 fn eye(distance: f64) -> DVec3 {

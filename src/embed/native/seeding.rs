@@ -29,8 +29,9 @@ pub(super) fn seed(
 ) -> Option<Seed> {
     let [first, by_distance] = [depth[0], depth[1]].map(f64::from);
     let [near, slope] = [block.near, block.key_slope].map(f64::from);
+    let key_offset: f64 = block.key_offset.map(f64::from).iter().sum();
     let [scale, offset] = if perspective {
-        [near / by_distance, -near * first / by_distance]
+        [near / by_distance, -near * first / by_distance - key_offset]
     } else {
         [-slope / by_distance, 1.0 + slope * (near + distance_offset + first / by_distance)]
     };
@@ -43,7 +44,8 @@ pub(super) fn seed(
     let behind = REACH * epsilon * if perspective { 1.0 / near } else { slope };
     let seed = Seed {
         key: [scale as f32, offset as f32],
-        resolution: (scale.abs() * depth_step(format) + 2f64.powi(-20) * offset.abs()) as f32,
+        key_offset: key_offset as f32,
+        resolution: (scale.abs() * depth_step(format) + 2f64.powi(-20) * (offset.abs() + key_offset)) as f32,
         rounding: rounding as f32,
         behind: behind as f32,
     };

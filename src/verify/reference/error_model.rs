@@ -4,7 +4,7 @@ use super::bands::{Band, BandSplats};
 use super::ellipse::{Ellipse, HALF_PIXEL};
 use super::rank::Rank;
 use super::{Projector, Splat};
-use crate::geometry::Surfels;
+use crate::geometry::{Bounds, Surfels};
 use glam::{DVec2, DVec3};
 
 /// Distance from a cut-off ellipse or a clip line within which a pixel centre is ambiguous, px.
@@ -65,7 +65,7 @@ pub(super) struct ErrorModel<'a> {
     pub projector: &'a Projector,
     /// See [`super::Tolerance::rounding`].
     pub rounding: f64,
-    /// Largest distance that depths are rounded by: with parallel rays they are relative to the scene.
+    /// Largest distance that depths are rounded by: with parallel rays, and from far away, they are relative to the scene.
     largest: f64,
 }
 
@@ -93,13 +93,23 @@ fn sides(distance: f64, reach: f64) -> impl Iterator<Item = Side> {
     may_be_kept.then_some(kept).into_iter().chain(may_be_clipped.then_some(clipped))
 }
 
-/// Distance from a plane near the scene that depths of parallel rays are rounded by, in radii of the scene's bounding sphere.
-const PARALLEL: f64 = 4.0;
+/// Distance from a plane near the scene that depths of parallel rays and of distant scenes are rounded by, in radii of the scene's bounding
+/// sphere.
+const RELATIVE: f64 = 4.0;
+/// Least distance of the middle of a distant scene, likewise.
+const DISTANT: f64 = 10.0;
+/// Largest width of a pixel where a scene is distant, relative to the distance.
+const NARROW: f64 = 1.0 / 4000.0;
 
 impl<'a> ErrorModel<'a> {
     pub fn new(projector: &'a Projector, surfels: &Surfels, rounding: f64) -> Self {
-        let radius = surfels.bounds().filter(|_| !projector.is_perspective()).map(|bounds| bounds.radius);
-        Self { projector, rounding, largest: radius.map_or(f64::INFINITY, |radius| PARALLEL * radius) }
+        let is_relative = |bounds: &Bounds| {
+            let middle = projector.distance(projector.view.transform_point3(bounds.centre()));
+            !projector.is_perspective()
+                || middle >= DISTANT * bounds.radius && projector.pixel_width() <= NARROW
+        };
+        let bounds = surfels.bounds().filter(is_relative);
+        Self { projector, rounding, largest: bounds.map_or(f64::INFINITY, |bounds| RELATIVE * bounds.radius) }
     }
 
     /// The distance that float32 rounds a depth by.
