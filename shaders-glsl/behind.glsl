@@ -2,6 +2,8 @@
 // these, and what is within its ε, shows in all of them.
 #version 450
 #pragma variant SUBGROUPS COMPUTE
+#pragma variant SLICES COMPUTE
+#pragma variant SUBGROUPS_SLICES COMPUTE
 #pragma variant MIX COMPUTE
 #pragma variant NEAREST_SAMPLES FRAGMENT
 #extension GL_GOOGLE_include_directive : require
@@ -11,9 +13,19 @@
 #if defined(COMPUTE) && !defined(MIX)
 
 #define BEHIND
+#define COVERAGE_KNOWN true
+#ifdef SLICES
+#define COVERAGE_STEPS 62000
+#define COVERAGE_UNROLLED 2
+#define BEHIND_STEPS 62000
+#define ATTRIBUTE_STEPS 62000
+#define SUMS_ACCESS
+#define STORES_SUMS
+#else
 #define COVERAGE_STEPS 12000
 #define BEHIND_STEPS 24000
 #define ATTRIBUTE_STEPS 26000
+#endif
 #include "lib/frame.glsl"
 #define IMAGE_ACCESS
 #include "lib/picture_pixel.glsl"
@@ -21,10 +33,7 @@
 #include "lib/pixels.glsl"
 #include "lib/tile.glsl"
 
-// The passes of surface run separately: the samples of the nearest surface are not known yet, nor the tiles with edges.
-layout(constant_id = 73) const bool SPLIT = false;
-
-layout(set = 1, binding = 5, std430) readonly buffer Coverage { uint coverage[]; };
+layout(set = 1, binding = 5, std430) buffer Coverage { uint coverage[]; };
 
 float nearest_depths[ROWS]; // of the nearest surface, where `depths` are of the surface behind
 uint full_pixels = 0;
@@ -32,8 +41,10 @@ uint full_pixels = 0;
 #include "lib/tile_coverage.glsl"
 #include "lib/tile_behind.glsl"
 #include "lib/tile_attribute.glsl"
-#include "lib/edge_tiles.glsl"
 #include "lib/mix_behind.glsl"
+#ifdef SLICES
+#include "lib/stored_sums.glsl"
+#endif
 
 void load_pixels(uvec2 origin) {
     for (uint r = 0; r < ROWS; r++) {
@@ -44,6 +55,12 @@ void load_pixels(uvec2 origin) {
         coverage_masks[r] = samples & ALL_SAMPLES;
         nearest_masks[r] = samples >> SAMPLES;
     }
+}
+
+// Finds the samples of the nearest surface.
+void find_nearest_samples(uvec2 origin) {
+    visited_count = MOST_VISITED + 1;
+    compute_coverage(origin);
 }
 
 // Sets the free samples of rows from the masks of pixels.
@@ -62,20 +79,7 @@ void find_free_samples() {
     incomplete_pixels = pixels_of_rows(columns);
 }
 
-void main() {
-    load_frame();
-    uvec2 origin = SPLIT ? tile_origin() : LISTED_ORIGIN(edges);
-    load_pixels(origin);
-    if (SPLIT) {
-        visited_count = MOST_VISITED + 1;
-        compute_coverage(origin);
-    } else {
-        GATHER_ROW(float, depths, row_depths)
-    }
-    find_free_samples();
-    compute_behind(origin);
-    sum_attributes(origin);
-    report_incomplete();
+void mix_pixels(uvec2 origin) {
     FOR_ROWS(r) {
         ivec2 pixel = ivec2(origin + lane_pixel(r));
         if (depths[0] > 0.0) mix_behind(pixel, coverage_masks[0], nearest_masks[0], tile_sums0[0], tile_sums1[0]);
@@ -87,6 +91,93 @@ void main() {
     }
 }
 
+#ifndef SLICES
+
+#include "lib/edge_tiles.glsl"
+
+// The passes of surface run separately: the samples of the nearest surface are not known yet, nor the tiles with edges.
+layout(constant_id = 73) const bool SPLIT = false;
+
+void main() {
+    load_frame();
+    uvec2 origin = SPLIT ? tile_origin() : LISTED_ORIGIN(edges);
+    load_pixels(origin);
+    if (SPLIT) find_nearest_samples(origin);
+    else GATHER_ROW(float, depths, row_depths)
+    find_free_samples();
+    for (uint x = 0; x < TILE; x++) row_behind[x] = 0.0;
+    compute_behind(origin);
+    sum_attributes(origin);
+    report_incomplete();
+    mix_pixels(origin);
+}
+
+#else
+
+// Stages of a frame in slices; each visits all slices before the next begins.
+layout(constant_id = 74) const uint STAGE = 0;
+const uint NEAREST_SAMPLES = 0, DEPTHS = 1, ATTRIBUTES = 2;
+
+// Bits of the κ of the surface behind, moved back by ε; 0 where there is none.
+layout(set = 1, binding = 24, std430) buffer BehindDepths { uint behind_depths[]; };
+
+// Adds the slice's samples of the nearest surface to those of the pixels.
+void add_nearest_samples(uvec2 origin) {
+    find_nearest_samples(origin);
+    for (uint r = 0; r < ROWS; r++) {
+        uvec2 pixel = origin + lane_pixel(r);
+        if (is_in_viewport(pixel)) coverage[pixel_index(ivec2(pixel))] |= nearest_masks[r] << SAMPLES;
+    }
+}
+
+// Updates the depths of the surface behind with the slice's splats.
+void update_depths(uvec2 origin) {
+    GATHER_ROW(float, depths, row_depths)
+    find_free_samples();
+    for (uint x = 0; x < TILE; x++) {
+        uvec2 pixel = origin + uvec2(x, lane % TILE);
+        uint index = is_in_viewport(pixel) ? pixel_index(ivec2(pixel)) : 0;
+        row_behind[x] = is_resumed() ? uintBitsToFloat(behind_depths[index]) : 0.0;
+    }
+    compute_behind(origin);
+    for (uint r = 0; r < ROWS; r++) {
+        uvec2 pixel = origin + lane_pixel(r);
+        if (is_in_viewport(pixel)) behind_depths[pixel_index(ivec2(pixel))] = floatBitsToUint(depths[r]);
+    }
+}
+
+// Adds the slice's splats to the sums of the surface behind; mixes it into the picture after the last one.
+void add_slice_attributes(uvec2 origin) {
+    for (uint r = 0; r < ROWS; r++) {
+        uvec2 pixel = origin + lane_pixel(r);
+        uint index = is_in_viewport(pixel) ? pixel_index(ivec2(pixel)) : 0;
+        nearest_depths[r] = depths[r];
+        depths[r] = uintBitsToFloat(behind_depths[index]);
+        if (is_resumed()) load_sums(index, tile_sums0[r], tile_sums1[r]);
+    }
+    visited_count = MOST_VISITED + 1;
+    sum_attributes(origin);
+    if (is_last_slice()) {
+        mix_pixels(origin);
+        return;
+    }
+    for (uint r = 0; r < ROWS; r++) {
+        uvec2 pixel = origin + lane_pixel(r);
+        if (is_in_viewport(pixel)) store_sums(pixel_index(ivec2(pixel)), tile_sums0[r], tile_sums1[r]);
+    }
+}
+
+void main() {
+    load_frame();
+    uvec2 origin = tile_origin();
+    load_pixels(origin);
+    if (STAGE == NEAREST_SAMPLES) add_nearest_samples(origin);
+    if (STAGE == DEPTHS) update_depths(origin);
+    if (STAGE == ATTRIBUTES) add_slice_attributes(origin);
+    report_incomplete();
+}
+
+#endif
 #endif
 
 #ifndef COMPUTE

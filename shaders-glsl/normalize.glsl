@@ -34,23 +34,15 @@ float alpha_of(uint i) {
 
 #include "lib/pixel_group.glsl"
 #include "lib/pixels.glsl"
-
-vec4 fetch0(uint i, bool wide) {
-    if (!wide) return vec4(sums0[i], vec3(0.0));
-    return vec4(sums0[4 * i], sums0[4 * i + 1], sums0[4 * i + 2], sums0[4 * i + 3]);
-}
-
-vec4 fetch1(uint i) {
-    if (!WIDE_SUMS1) return vec4(SUM_DEPTH ? sums1[i] : 0.0, vec3(0.0));
-    return vec4(sums1[4 * i], sums1[4 * i + 1], sums1[4 * i + 2], sums1[4 * i + 3]);
-}
+#include "lib/stored_sums.glsl"
 
 void main() {
     ivec2 pixel = invocation_pixel(), size = picture_size();
     if (any(greaterThanEqual(pixel, size))) return;
     uint i = uint(pixel.y * size.x + pixel.x);
-    vec4 s0 = fetch0(i, WIDE_SUMS0);
-    store_pixel(pixel, normalize_pixel(vec2(pixel) + 0.5, visibility[i] != 0u, alpha_of(i), s0, fetch1(i)));
+    vec4 s0, s1;
+    load_sums(i, s0, s1);
+    store_pixel(pixel, normalize_pixel(vec2(pixel) + 0.5, visibility[i] != 0u, alpha_of(i), s0, s1));
 }
 
 #endif

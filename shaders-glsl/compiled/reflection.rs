@@ -136,7 +136,7 @@ pub static BEHIND_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("behind_compute.spv"),
     constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 67, 70, 72, 73, 76, 79],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, false), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::EDGE_TILES, true)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::EDGE_TILES, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
 
@@ -146,7 +146,27 @@ pub static BEHIND_SUBGROUPS_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("behind_subgroups_compute.spv"),
     constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 67, 70, 72, 73, 76, 79],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, false), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::CLIP_TEXELS, false), (&resource::EDGE_TILES, true)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::CLIP_TEXELS, false), (&resource::EDGE_TILES, true)],
+    push: size_of::<layout::Hierarchy>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/behind.glsl`.
+pub static BEHIND_SLICES_COMPUTE: Module = Module {
+    name: "behind_slices_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("behind_slices_compute.spv"),
+    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 67, 70, 72, 74, 76, 79],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, true), (&resource::SUMS1, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::BEHIND_DEPTHS, true)],
+    push: size_of::<layout::Hierarchy>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/behind.glsl`.
+pub static BEHIND_SUBGROUPS_SLICES_COMPUTE: Module = Module {
+    name: "behind_subgroups_slices_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("behind_subgroups_slices_compute.spv"),
+    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 67, 70, 72, 74, 76, 79],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, true), (&resource::SUMS1, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::CLIP_TEXELS, false), (&resource::BEHIND_DEPTHS, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
 
@@ -1094,6 +1114,8 @@ pub mod constant {
     pub const SLICED: u32 = 47;
     /// `SPLIT`, first in `shaders-glsl/behind.glsl`.
     pub const SPLIT: u32 = 73;
+    /// `STAGE`, first in `shaders-glsl/behind.glsl`.
+    pub const STAGE: u32 = 74;
     /// `STORED_COLOURS`, first in `shaders-glsl/attribute.glsl`.
     pub const STORED_COLOURS: u32 = 62;
     /// `SUM_COLOURS`, first in `shaders-glsl/attribute.glsl`.
@@ -1129,6 +1151,15 @@ pub mod constant {
 /// What shaders see at the bindings of their descriptor sets.
 pub mod resource {
     use super::{DescriptorType, Resource, ShaderStageFlags};
+
+    /// `BehindDepths`, first in `shaders-glsl/behind.glsl`.
+    pub static BEHIND_DEPTHS: Resource = Resource {
+        name: "BehindDepths",
+        set: 1,
+        binding: 24,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
 
     /// `Boxes`, first in `shaders-glsl/attribute.glsl`.
     pub static BOXES: Resource = Resource {

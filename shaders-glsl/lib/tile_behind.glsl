@@ -87,9 +87,8 @@ void add_behind_batch(uint count, uint id, uvec2 origin) {
 #define WALK_BATCH(count, id) add_behind_batch(count, id, origin)
 #include "lib/walk.glsl"
 
-// Computes the depths of the surface behind, from the samples that are free.
+// Computes the depths of the surface behind, from the samples that are free and from the depths so far.
 void compute_behind(uvec2 origin) {
-    for (uint x = 0; x < TILE; x++) row_behind[x] = 0.0;
     update_behind_cull_key();
     visited_count = 0;
     walk_behind(origin, origin + TILE - 1, 0, 0, true);

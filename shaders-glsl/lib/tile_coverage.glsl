@@ -19,6 +19,11 @@ float row_depths[TILE];
 // Visible columns of the row, in each byte.
 uint row_visible;
 
+// Whether the covered samples are known, so that those of the nearest surface alone are sought.
+#ifndef COVERAGE_KNOWN
+#define COVERAGE_KNOWN false
+#endif
+
 // As UNROLLED: 2 is slower than 1 but takes half the iterations.
 #ifndef COVERAGE_UNROLLED
 #define COVERAGE_UNROLLED 1
@@ -312,7 +317,8 @@ void compute_coverage(uvec2 origin) {
     if (MIXED) GATHER_ROW(float, depths, row_depths)
     const uint bytes = LANE_SAMPLES < 4 ? 0x101u : 0x1010101u;
     row_visible *= bytes;
-    for (uint w = 0; w < SAMPLE_WORDS; w++) row_coverage[w] = row_nearest[w] = row_full * bytes;
+    for (uint w = 0; w < SAMPLE_WORDS; w++) row_nearest[w] = row_full * bytes;
+    for (uint w = 0; w < SAMPLE_WORDS; w++) row_coverage[w] = COVERAGE_KNOWN ? ~0u : row_nearest[w];
     update_incomplete_pixels();
     // First those that visibility visited: they cover most tiles alone.
     WORKGROUP_BARRIER();
@@ -320,7 +326,7 @@ void compute_coverage(uvec2 origin) {
     uint first = all_recorded ? 0 : SCRATCH, end = all_recorded && lacks ? visited_count : first;
     walk_coverage(origin, origin + TILE - 1, first, end, lacks);
     for (uint r = 0; r < ROWS; r++) {
-        coverage_masks[r] = (is_resumed() ? coverage_masks[r] : 0) | mask_of_pixel(row_coverage, r);
+        if (!COVERAGE_KNOWN) coverage_masks[r] = (is_resumed() ? coverage_masks[r] : 0) | mask_of_pixel(row_coverage, r);
         if (MIXED) nearest_masks[r] = mask_of_pixel(row_nearest, r);
     }
 }

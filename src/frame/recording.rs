@@ -116,8 +116,12 @@ impl PreparedPass {
                 );
             }
             Commands::Dispatches if has_pipelines => {
+                let uses = frame.uses(&self.accesses);
+                let mut enc = rec.pass(self.pass.name, &uses);
                 for slice in 0..self.slices(frame) {
-                    let mut enc = rec.pass(self.pass.name, &frame.uses(&self.accesses));
+                    if slice > 0 {
+                        enc.barrier(&uses);
+                    }
                     self.dispatch(&mut enc, frame, slice);
                 }
             }

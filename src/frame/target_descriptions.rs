@@ -65,7 +65,7 @@ impl Resource {
             Self::OpenTiles => &[&resource::OPEN_TILES],
             Self::EdgeTiles => &[&resource::EDGE_TILES],
             Self::Coverage => &[&resource::COVERAGE],
-            Self::Behind => &[&resource::BEHIND_IMAGE],
+            Self::Behind => &[&resource::BEHIND_DEPTHS, &resource::BEHIND_IMAGE],
             Self::Nearest => &[&resource::NEAREST],
             Self::NearestDepth => &[&resource::NEAREST_DEPTH],
             Self::NearestId => &[&resource::NEAREST_ID],
@@ -211,11 +211,13 @@ fn compute_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
         let format = sums_format(Precision::Full, wide);
         pixels(resource, format, pixel_bytes(format), shader)
     };
+    let behind = pixels(Resource::Behind, Format::R32_UINT, 4, &resource::BEHIND_DEPTHS);
     let stages = [
         Some(visibility),
         Some(sums(Resource::Sums0, variant.wide_sums0(), &resource::SUMS0)),
         variant.has_sums1().then(|| sums(Resource::Sums1, variant.wide_sums1(), &resource::SUMS1)),
         coverage(variant),
+        (variant.sliced && variant.mixed).then_some(behind),
     ];
     stages.into_iter().chain(outputs).collect()
 }

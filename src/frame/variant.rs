@@ -253,8 +253,7 @@ impl Variant {
     /// The variant with sliced dispatches, on the tile path.
     pub fn with_slices(self, sliced: bool) -> Self {
         let sliced = sliced && self.is_tiled();
-        // Pass behind visits all splats of a tile in one dispatch.
-        Self { sliced, split: self.split || sliced, mixed: self.mixed && !sliced, ..self }
+        Self { sliced, split: self.split || sliced, ..self }
     }
 
     /// Whether passes after shading read depths.

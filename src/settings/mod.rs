@@ -308,7 +308,7 @@ pub enum Edges {
     /// Of the 16 samples of [`Alpha::Coverage`], those inside splats within ε of the nearest one are of the nearest surface. If other splats
     /// cover further samples, the nearest of these and what is within its ε are the surface behind, which shows in all further samples. Only
     /// light and colours are mixed; depths, normals and α are as of `nearest`. Pull–push, [`Visibility::Axis`], [`Visibility::Nearest`],
-    /// [`Alpha::Mask`], subpasses of a host, and frames on the compute path with thousands of splats a tile show the nearest surface alone.
+    /// [`Alpha::Mask`] and subpasses of a host show the nearest surface alone.
     Mixed,
 }
 

@@ -1,5 +1,6 @@
 //! Encoder of the commands of one pass.
 
+use super::access::Use;
 use super::pipeline::Raw;
 use super::{
     Buffer, ComputePipeline, DescriptorSet, Device, DrawPipeline, Framebuffer, HostPass, Image, Recorder,
@@ -78,6 +79,11 @@ impl<'r, 'a> Encoder<'r, 'a> {
 
     fn raw(&self) -> &'a ash::Device {
         &self.rec.device.raw
+    }
+
+    /// Inserts the barrier that `uses` need between two dispatches of the pass.
+    pub fn barrier(&mut self, uses: &[Use]) {
+        self.rec.barrier(uses);
     }
 
     /// Dispatches workgroups with `push` as the push constants. The pipeline takes as many of the first sets and bytes as it declares.

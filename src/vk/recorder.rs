@@ -144,7 +144,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// One barrier for all resources of a pass.
-    fn barrier(&mut self, uses: &[Use]) {
+    pub(super) fn barrier(&mut self, uses: &[Use]) {
         let found = self.tracker.barrier(&self.device.history, uses);
         let Some(Barrier { source, target, memory, images }) = found else { return };
         // SAFETY: the command buffer is being recorded outside a render pass, and the images are alive.

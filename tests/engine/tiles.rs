@@ -207,9 +207,7 @@ fn crowded_tiles_show_all_splats() {
     let size = [16; 2];
     for name in ["perspective-ewa", "sprites-unfiltered"] {
         for alpha in [Alpha::Mask, Alpha::Coverage] {
-            // Crowded tiles show the nearest surface alone on the compute path.
-            let edges = Edges::Nearest;
-            let settings = Settings { alpha, edges, ..Method::named(name).unwrap().settings() };
+            let settings = Settings { alpha, ..Method::named(name).unwrap().settings() };
             let [raster, compute] = [Rasterizer::Draw, Rasterizer::Compute].map(|rasterizer| {
                 let options = RenderOptions { size, ..all_outputs(rasterizer) };
                 render(&device, &surfels, &camera(size), &settings, options)

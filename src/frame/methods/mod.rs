@@ -40,7 +40,7 @@ pub fn passes(variant: &Variant, path: Path, scenes: usize) -> Vec<&'static Pass
         }
     };
     if variant.mixed {
-        list.extend(behind(path, variant.split));
+        list.extend(behind(path, variant));
     }
     if !matches!(path, Path::Subpasses { .. }) {
         list.extend(
@@ -74,9 +74,12 @@ fn sides(path: Path, there: bool) -> Vec<&'static Pass> {
 }
 
 /// The passes after normalize that mix the surface behind into pixels at edges.
-fn behind(path: Path, split: bool) -> Vec<&'static Pass> {
+fn behind(path: Path, variant: &Variant) -> Vec<&'static Pass> {
     match path {
-        Path::Compute if split => vec![&behind::COMPUTE],
+        Path::Compute if variant.sliced => {
+            vec![&behind::SLICED_SAMPLES, &behind::SLICED_DEPTHS, &behind::SLICED_ATTRIBUTES]
+        }
+        Path::Compute if variant.split => vec![&behind::COMPUTE],
         Path::Compute => vec![&EDGES, &behind::COMPUTE],
         Path::Raster => {
             vec![

@@ -9,15 +9,16 @@ use crate::frame::resource::Resource::{
 use crate::frame::variant::Variant;
 use crate::vk::shaders::{
     BEHIND_COMPUTE, BEHIND_FRAGMENT, BEHIND_MIX_COMPUTE, BEHIND_NEAREST_SAMPLES_FRAGMENT,
-    BEHIND_SUBGROUPS_COMPUTE, BEHIND_VERTEX, constant,
+    BEHIND_SLICES_COMPUTE, BEHIND_SUBGROUPS_COMPUTE, BEHIND_SUBGROUPS_SLICES_COMPUTE, BEHIND_VERTEX,
+    constant,
 };
 use crate::vk::{Blend, DepthTest, Topology};
 
 /// One workgroup per tile with edges; of all tiles, where the passes of `surface` run separately.
 pub static COMPUTE: Pass = Pass {
     name: "behind",
-    reads: &[Splats, Boxes, Attributes, ScreenClips, Visibility, Coverage],
-    writes: &[Image, EdgeTiles, IncompleteFrame],
+    reads: &[Splats, Boxes, Attributes, ScreenClips, Visibility],
+    writes: &[Coverage, Image, EdgeTiles, IncompleteFrame],
     clears: &[],
     programs: Programs::OfFrame(tile_programs),
     commands: Commands::Dispatches,
@@ -31,6 +32,32 @@ fn tile_programs(variant: &Variant) -> Vec<Program> {
         constants.into_iter().fold(program, |program, (id, value)| program.with(id, value))
     };
     programs.map(|program| Program { domain, ..with(program) }).collect()
+}
+
+/// One workgroup per tile and slice: marks the samples of the nearest surface.
+pub static SLICED_SAMPLES: Pass = sliced(|variant| stage(variant, 0));
+
+/// The same, for the depths of the surface behind.
+pub static SLICED_DEPTHS: Pass = sliced(|variant| stage(variant, 1));
+
+/// The same, for its sums; the last slice mixes both surfaces.
+pub static SLICED_ATTRIBUTES: Pass = sliced(|variant| stage(variant, 2));
+
+const fn sliced(programs: fn(&Variant) -> Vec<Program>) -> Pass {
+    Pass {
+        name: "behind",
+        reads: &[Splats, Boxes, Attributes, ScreenClips, Visibility],
+        writes: &[Coverage, Behind, Sums0, Sums1, Image, IncompleteFrame],
+        clears: &[],
+        programs: Programs::OfFrame(programs),
+        commands: Commands::Dispatches,
+    }
+}
+
+/// Programs of a stage of `behind.glsl`.
+fn stage(variant: &Variant, stage: u32) -> Vec<Program> {
+    let programs = tiles(variant, [&BEHIND_SLICES_COMPUTE, &BEHIND_SUBGROUPS_SLICES_COMPUTE]).into_iter();
+    programs.map(|program| program.with(constant::MIXED, true).with(constant::STAGE, stage)).collect()
 }
 
 /// Splat triangles that mark the samples of the nearest surface; they leave the depths empty.
