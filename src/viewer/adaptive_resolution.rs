@@ -253,7 +253,7 @@ mod tests {
         fn time_of(&self, quality: Quality, workload: &Workload) -> f64 {
             let part = workload.surfels(quality) / 4e5;
             let fewer = 1.0 - 0.05 * part.ln() / 1.6f64.ln();
-            let filter = if quality.filtered { 1.2 } else { 1.0 };
+            let filter = if quality.filtered { 1.2 } else { 1.0 } * if quality.smooth { 1.0 } else { 0.7 };
             let scaling = if quality.scale < 1.0 { 0.1 * self.pixels } else { 0.0 };
             self.fixed + self.pixels * filter * fewer * quality.scale.powi(2) + scaling + self.surfels * part
         }

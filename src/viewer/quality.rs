@@ -1,7 +1,7 @@
-//! Quality of a frame: its resolution, its level of detail, and whether its pixels are filtered.
+//! Quality of a frame: its resolution, its level of detail, and whether its pixels are filtered and its outlines smooth.
 
 use surfel::Settings;
-use surfel::settings::Edges;
+use surfel::settings::{Alpha, Edges};
 
 /// Resolution scales of the side, below the full one. Neighbours differ by 1.6 in pixels; the first by 2.5 from the full one, as smaller pictures have
 /// to be scaled, which takes as long as what a few pixels less would save.
@@ -21,6 +21,8 @@ const FEWER: f64 = 0.9;
 
 /// Cost of a pixel that is filtered and whose edges are mixed, relative to that of others.
 const FILTER_COST: f64 = 1.3;
+/// Cost of a pixel that is covered or not, relative to that of others.
+const MASK_COST: f64 = 0.7;
 /// Part of a frame's time that does not depend on its quality, ms; like the next ones of a computer without a GPU.
 const FIXED: f64 = 10.0;
 /// Time of a pixel, ms.
@@ -30,7 +32,7 @@ const SURFEL: f64 = 4.5e-4;
 /// Time of a pixel of the window to which a smaller picture is scaled, ms.
 const SCALED: f64 = 1.7e-5;
 
-/// Resolution and level of detail of a frame, and whether its pixels are filtered.
+/// Resolution and level of detail of a frame, and what its pixels show.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quality {
     /// Side of the picture as part of the full one's.
@@ -39,26 +41,33 @@ pub struct Quality {
     pub lod: f64,
     /// Whether pixels are filtered after shading and edges are mixed, as the settings say; otherwise splats have the whole low-pass filter.
     pub filtered: bool,
+    /// Whether α is the covered part of a pixel, if the settings say so; otherwise pixels are covered or not.
+    pub smooth: bool,
 }
 
 impl Quality {
     /// Every pixel, and all points but those that share a pixel with others.
-    pub const FULL: Self = Self { scale: 1.0, lod: FULL_LOD, filtered: true };
+    pub const FULL: Self = Self { scale: 1.0, lod: FULL_LOD, filtered: true, smooth: true };
 
     /// Whether this is finer than `other`.
     pub fn is_finer_than(self, other: Self) -> bool {
-        let order = |quality: Self| (-quality.scale, quality.lod, u8::from(!quality.filtered));
+        let order = |Self { scale, lod, filtered, smooth }: Self| {
+            (-scale, lod, [filtered, smooth].map(|has| u8::from(!has)))
+        };
         order(self) < order(other)
     }
 
     /// The settings of a frame of this quality.
     pub fn settings(self, settings: &Settings) -> Settings {
         let lod = settings.lod.max((self.scale * self.lod) as f32);
-        if self.filtered {
-            Settings { lod, ..settings.clone() }
-        } else {
-            Settings { lod, pixel_filter: 0.0, edges: Edges::Nearest, ..settings.clone() }
+        let mut settings = Settings { lod, ..settings.clone() };
+        if !self.filtered {
+            (settings.pixel_filter, settings.edges) = (0.0, Edges::Nearest);
         }
+        if !self.smooth {
+            settings.alpha = Alpha::Mask;
+        }
+        settings
     }
 }
 
@@ -107,19 +116,21 @@ impl Workload {
     /// Time of a frame on a computer without a GPU, ms. On other devices qualities next to each other have about the same ratio.
     pub fn typical_ms(&self, quality: Quality) -> f64 {
         let pixels = self.pixels * quality.scale * quality.scale;
-        let pixel = if quality.filtered { FILTER_COST * PIXEL } else { PIXEL };
+        let filter = if quality.filtered { FILTER_COST } else { 1.0 };
+        let pixel = PIXEL * filter * if quality.smooth { 1.0 } else { MASK_COST };
         let scaled = if quality.scale < 1.0 { self.pixels } else { 0.0 };
         FIXED + pixel * pixels + SURFEL * self.surfels(quality) + SCALED * scaled
     }
 
-    /// The qualities, finest first: filtered pixels go first, then points, then pixels, as cells of a few px cost less of the picture than
-    /// pixels do (`surfel render --lod PX`, `surfel compare`).
+    /// The qualities, finest first: filtered pixels go first, then points, then smooth outlines, then pixels, as cells of a few px cost less of
+    /// the picture than pixels do (`surfel render --lod PX`, `surfel compare`).
     pub fn qualities(&self) -> impl DoubleEndedIterator<Item = Quality> {
         let coarsest = self.levels.last().map_or(0.0, |level| level.lod);
-        let unfiltered = |scale, lod| Quality { scale, lod, filtered: false };
+        let of_levels = |level: &Level| Quality { lod: level.lod, filtered: false, ..Quality::FULL };
+        let mask = move |scale| Quality { scale, lod: coarsest, filtered: false, smooth: false };
         std::iter::once(Quality::FULL)
-            .chain(self.levels.iter().map(move |level| unfiltered(1.0, level.lod)))
-            .chain(SCALES.map(move |scale| unfiltered(scale, coarsest)))
+            .chain(self.levels.iter().map(of_levels))
+            .chain([1.0].into_iter().chain(SCALES).map(mask))
     }
 }
 
