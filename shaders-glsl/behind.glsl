@@ -21,7 +21,9 @@
 #define ATTRIBUTE_STEPS 62000
 #define SUMS_ACCESS
 #define STORES_SUMS
+#define COVERAGE_ACCESS
 #else
+#define COVERAGE_ACCESS readonly
 #define COVERAGE_STEPS 12000
 #define BEHIND_STEPS 24000
 #define ATTRIBUTE_STEPS 26000
@@ -33,7 +35,7 @@
 #include "lib/pixels.glsl"
 #include "lib/tile.glsl"
 
-layout(set = 1, binding = 5, std430) buffer Coverage { uint coverage[]; };
+layout(set = 1, binding = 5, std430) COVERAGE_ACCESS buffer Coverage { uint coverage[]; };
 
 float nearest_depths[ROWS]; // of the nearest surface, where `depths` are of the surface behind
 uint full_pixels = 0;

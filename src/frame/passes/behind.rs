@@ -17,8 +17,8 @@ use crate::vk::{Blend, DepthTest, Topology};
 /// One workgroup per tile with edges; of all tiles, where the passes of `surface` run separately.
 pub static COMPUTE: Pass = Pass {
     name: "behind",
-    reads: &[Splats, Boxes, Attributes, ScreenClips, Visibility],
-    writes: &[Coverage, Image, EdgeTiles, IncompleteFrame],
+    reads: &[Splats, Boxes, Attributes, ScreenClips, Visibility, Coverage],
+    writes: &[Image, EdgeTiles, IncompleteFrame],
     clears: &[],
     programs: Programs::OfFrame(tile_programs),
     commands: Commands::Dispatches,
