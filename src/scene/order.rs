@@ -22,6 +22,7 @@ const BLOCKS: [(usize, f32); 2] = [(8, 4.0), (512, 32.0)];
 impl Order {
     /// The order of these positions, by the extents of blocks of consecutive ones.
     pub(super) fn of(positions: &[Vec3]) -> Self {
+        let area = occupied_area(positions);
         let is_arbitrary = |(block, most): (usize, f32)| {
             let blocks = positions.chunks_exact(block);
             let count = blocks.len();
@@ -32,8 +33,8 @@ impl Order {
             wholes.sort_by(f32::total_cmp);
             let whole = wholes.get(wholes.len() / 2).copied().unwrap_or_default();
             let mean = blocks.map(|block| extent(block.iter()).min(whole)).sum::<f32>() / count as f32;
-            // A block of a surface takes 1 / count of its area.
-            mean > most * whole / (count as f32).sqrt()
+            // A block of a surface takes 1 / count of its area, which in a building of many rooms is far more than that of the whole's extent.
+            mean > most * (whole * whole).max(area).sqrt() / (count as f32).sqrt()
         };
         if BLOCKS.into_iter().any(is_arbitrary) { Self::Arbitrary } else { Self::Coherent }
     }
@@ -47,6 +48,28 @@ fn extent<'a>(positions: impl Iterator<Item = &'a Vec3>) -> f32 {
     let finite = positions.filter(|position| position.is_finite());
     let bounds = finite.map(|p| (*p, *p)).reduce(|(low, high), (p, _)| (low.min(p), high.max(p)));
     bounds.map_or(0.0, |(low, high)| low.distance(high))
+}
+
+/// Cells along the longest side of the bulk of the positions, which tell the area of a surface.
+const AREA_CELLS: usize = 64;
+
+/// Area of a surface through these positions, as if it were parallel to a side of each cell that it meets; 0 where it is not known.
+fn occupied_area(positions: &[Vec3]) -> f32 {
+    let Some([low, high]) = bulk(positions) else { return 0.0 };
+    let side = (high - low).max_element() / AREA_CELLS as f32;
+    if !(side > 0.0 && side.is_finite()) {
+        return 0.0;
+    }
+    let mut is_met = vec![false; AREA_CELLS.pow(3)];
+    for position in positions {
+        let cell = (position - low) / side;
+        // NaN fails the test.
+        if cell.min_element() >= 0.0 && cell.max_element() < AREA_CELLS as f32 {
+            let [x, y, z] = cell.as_usizevec3().to_array();
+            is_met[(z * AREA_CELLS + y) * AREA_CELLS + x] = true;
+        }
+    }
+    is_met.iter().filter(|met| **met).count() as f32 * side * side
 }
 
 /// Positions that are sampled for a box.
@@ -105,5 +128,20 @@ mod tests {
         assert_eq!(Order::of(&with_stray), Order::Arbitrary);
         assert_eq!(Order::of(&positions[..7]), Order::Coherent);
         assert_eq!(Order::of(&[Vec3::NAN; 1024]), Order::Coherent);
+    }
+
+    #[test]
+    fn a_sorted_surface_of_many_layers_is_coherent() {
+        // 16 floors of 192 × 192 points, with a hundredth of the building's length between the points.
+        let side = 192;
+        let floor = |z: usize| (0..side * side).map(move |i| [i % side, i / side, 12 * z]);
+        let cells = (0..16).flat_map(floor);
+        let mut positions: Vec<_> = cells.map(|cell| Vec3::from(cell.map(|at| at as f32))).collect();
+        let order = crate::geometry::morton::order(&positions);
+        let sorted: Vec<_> = order.iter().map(|i| positions[*i as usize]).collect();
+        assert_eq!(Order::of(&sorted), Order::Coherent);
+        let count = positions.len();
+        positions = (0..count).map(|i| sorted[i * 40_503 % count]).collect();
+        assert_eq!(Order::of(&positions), Order::Arbitrary);
     }
 }
