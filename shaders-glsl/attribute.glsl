@@ -105,7 +105,7 @@ void main() {
     if (CORNERS && !OVERLAP) weight *= bilinear_weight(corners, mat2(square.xy, square.zw), m);
     gl_FragDepth = ranked(key, rank);
     sum0 = weight * vec4(1.0, attribute0);
-    sum1 = weight * vec4(SUM_DEPTH ? frame.key_gain * shown_key(key, plane_lo_disc.w) : 0.0, attribute1);
+    sum1 = weight * vec4(SUM_DEPTH ? frame.key_gain * key : 0.0, attribute1);
 }
 
 #endif

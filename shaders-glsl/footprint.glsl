@@ -258,7 +258,7 @@ Box box_of_splat(uint i, Splat splat) {
     vec2 attribute0 = anchor_of(splat) + splat.offset - 0.5;
     ivec2 low = ivec2(max(ceil(attribute0 - reach), vec2(0.0)));
     ivec2 high = ivec2(min(floor(attribute0 + reach), frame.viewport - 1.0));
-    float nearest = nearest_of(splat, variance, stretch);
+    float nearest = shown_key(nearest_of(splat, variance, stretch), splat.key_disc);
     if (any(greaterThan(low, high)) || nearest <= frame.key_far) return EMPTY_BOX;
     uint clip = screen_clip_index(i);
     Box box = box_of(low, high, least_tested(nearest), has_clip(clip) ? chunk.first_clip + clip : NO_CLIP);

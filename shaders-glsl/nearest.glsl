@@ -124,7 +124,7 @@ void main() {
 #endif
     gl_FragDepth = ranked(min(key, plane_lo_disc.w), rank);
     sum0 = vec4(1.0, attribute0);
-    sum1 = vec4(SUM_DEPTH ? frame.key_gain * shown_key(key, plane_lo_disc.w) : 0.0, attribute1);
+    sum1 = vec4(SUM_DEPTH ? frame.key_gain * key : 0.0, attribute1);
 }
 
 #endif

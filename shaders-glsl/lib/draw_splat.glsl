@@ -125,7 +125,7 @@ void evaluate_fragment(out vec2 m, out float key, out float rank) {
     float key_centre = centre_key(plane_epsilon.xyz, plane_lo_disc.xyz, anchor_offset.zw);
     Ellipse ellipse = Ellipse(
         anchor_offset.xy, anchor_offset.zw, whitening, fine, plane_epsilon.xyz, plane_lo_disc.xyz, key_centre, least_keys.x,
-        clip);
+        plane_lo_disc.w, clip);
     vec2 centre = gl_FragCoord.xy - frame.origin;
     if (!splat_fragment(ellipse, centre, m, key, rank)) discard;
 #ifdef COVERAGE

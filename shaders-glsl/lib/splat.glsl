@@ -3,6 +3,7 @@
 #include "lib/double_float.glsl"
 #include "lib/clip.glsl"
 #include "lib/footprint_kind.glsl"
+#include "lib/shown_key.glsl"
 
 layout(constant_id = 14) const bool WIDEN_SMALL = false; // the low-pass filter widens only axes shorter than itself
 layout(constant_id = 16) const bool CONFETTI = false; // the kernel is ψ_E
@@ -198,6 +199,7 @@ struct Ellipse {
     vec3 plane_lo;
     float key_centre; // on_plane: κ of the plane at the centre
     float least_key;  // CURVATURES: κ of the plane down to which there are fragments
+    float key_disc;   // κ of the disc's nearest point
     uint clip;        // see screen_clip_number
 };
 
@@ -248,7 +250,8 @@ Ellipse ellipse_of(Splat splat, vec2 variance, uint clip) {
     vec4 whitening = vec4(splat.axis * inverse.x, vec2(-splat.axis.y, splat.axis.x) * inverse.y);
     mat2x4 fine = CONFETTI ? fine_rows(splat, variance) : mat2x4(0.0);
     float key = centre_key(splat.plane_hi, splat.plane_lo, splat.offset);
-    return Ellipse(anchor_of(splat), splat.offset, whitening, fine, splat.plane_hi, splat.plane_lo, key, least_fragment_key(splat), clip);
+    return Ellipse(
+        anchor_of(splat), splat.offset, whitening, fine, splat.plane_hi, splat.plane_lo, key, least_fragment_key(splat), splat.key_disc, clip);
 }
 
 // Kernel coordinates along the ellipse's axes, σ, at d px from the anchor.
@@ -278,6 +281,7 @@ bool splat_fragment(Ellipse ellipse, vec2 pixel, out vec2 m, out float key, out 
     rank = 1.0;
     if (has_clip(ellipse.clip)) rank = clip_rank(clip_distance(screen_clip(ellipse.clip), d));
     if (CURVATURES) inside = inside && key >= ellipse.least_key;
+    key = shown_key(key, ellipse.key_disc);
     return inside && rank > 0.0 && key > frame.key_far && key <= nearest_key();
 }
 
@@ -294,13 +298,6 @@ float nearest_of(Splat splat, vec2 variance, float stretch) {
     return centre + rise + margin;
 }
 #endif
-
-// κ of the depth that a fragment shows. The low-pass widens a disc over which its plane extends in front of it: by little where the plane
-// is that of the surface, far where the disc is seen edge-on.
-float shown_key(float key, float key_disc) {
-    if (DISTANT) return min(key, key_disc + frame.key_reach * inverse_depth(key_disc));
-    return min(key, PERSPECTIVE ? frame.key_reach * key_disc : key_disc + frame.key_reach);
-}
 
 // ε of a splat relative to its distance, in perspective.
 float relative_epsilon(float epsilon) {

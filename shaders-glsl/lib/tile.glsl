@@ -142,6 +142,7 @@ struct TileSplat {
     Affine plane;
     float key_centre; // on_plane: κ of the plane at the centre
     float least_key;  // CURVATURES: see Ellipse
+    float key_disc;
     vec3 lines[2];    // CLIPS: see ScreenClip
     float concave;
 };
@@ -164,6 +165,7 @@ TileSplat splat_on_tile(Ellipse ellipse, vec2 origin) {
     splat.plane = plane_on_tile(ellipse.plane_hi, ellipse.plane_lo, d);
     splat.key_centre = ellipse.key_centre;
     splat.least_key = ellipse.least_key;
+    splat.key_disc = ellipse.key_disc;
     splat.lines[0] = splat.lines[1] = vec3(1.0, 0.0, 0.0);
     splat.concave = 0.0;
     if (CLIPS && ellipse.clip != NO_CLIP) {
@@ -181,6 +183,7 @@ TileSplat shuffle(TileSplat s, uint from) {
     result.plane = shuffle(s.plane, from);
     if (on_plane()) result.key_centre = shuffle(s.key_centre, from);
     if (CURVATURES) result.least_key = shuffle(s.least_key, from);
+    result.key_disc = shuffle(s.key_disc, from);
     if (CLIPS) {
         result.lines[0] = shuffle(s.lines[0], from);
         result.lines[1] = shuffle(s.lines[1], from);
@@ -206,6 +209,7 @@ bool tile_fragment(TileSplat splat, vec2 d, out vec2 m, out float key, out float
     rank = 1.0;
     if (CLIPS) rank = clip_rank(clip_distance(splat, d));
     if (CURVATURES) inside = inside && key >= splat.least_key;
+    key = shown_key(key, splat.key_disc);
     return inside && rank > 0.0 && key > frame.key_far && key <= nearest_key();
 }
 

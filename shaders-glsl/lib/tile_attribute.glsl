@@ -9,9 +9,9 @@ vec4 tile_sums0[ROWS], tile_sums1[ROWS]; // see lib/sums.glsl
 // κ below which all pixels of the tile are occluded.
 float attribute_cull_key;
 
-// Adds a splat to the sums, if `is_splat`; `attribute0` is (normal or colour, weight), `key_disc` κ of the disc's nearest point.
+// Adds a splat to the sums, if `is_splat`; `attribute0` is (normal or colour, weight).
 void add_attributes(
-    TileSplat splat, vec4 attribute0, vec3 attribute1, float key_disc, vec4 corners, vec3 square, bool is_splat) {
+    TileSplat splat, vec4 attribute0, vec3 attribute1, vec4 corners, vec3 square, bool is_splat) {
     mat2 axes = mat2(square.xy, square.z * vec2(-square.y, square.x));
     for (uint r = 0; r < ROWS; r++) {
         vec2 m;
@@ -27,7 +27,7 @@ void add_attributes(
         if (FRAME_CORNERS && !OVERLAP) weight *= bilinear_weight(corners, axes, m);
         weight = has_fragment ? weight : 0.0;
         tile_sums0[r] += vec4(weight, weight * attribute0.xyz);
-        tile_sums1[r] += vec4(has_fragment ? weight * frame.key_gain * shown_key(key, key_disc) : 0.0, weight * attribute1);
+        tile_sums1[r] += vec4(has_fragment ? weight * frame.key_gain * key : 0.0, weight * attribute1);
     }
 }
 
@@ -44,10 +44,9 @@ void add_attribute_batch(uint count, uint id, uvec2 origin) {
     do {
         for (uint k = 0; k < UNROLLED; k++) {
             vec3 attribute1 = WIDE_SUMS1 ? shuffle(attributes.attribute1, s + k) : vec3(0.0);
-            float key_disc = SUM_DEPTH ? shuffle(splat.key_disc, s + k) : 0.0;
             vec4 corners = FRAME_CORNERS ? shuffle(attributes.corners, s + k) : vec4(1.0);
             vec3 square = FRAME_CORNERS ? shuffle(attributes.square, s + k) : vec3(1.0);
-            add_attributes(shuffle(lane_splat, s + k), shuffle(attribute0, s + k), attribute1, key_disc, corners, square,
+            add_attributes(shuffle(lane_splat, s + k), shuffle(attribute0, s + k), attribute1, corners, square,
                 s + k < count);
         }
         s += UNROLLED;

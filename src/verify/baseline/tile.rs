@@ -93,9 +93,10 @@ impl Tile {
             Shape { variance: visibility_variance(splat.shape.variance, frame.settings), ..splat.shape };
         let Some(cover) = Cover::new(splat, &shape, frame, self.corner()) else { return };
         let [far, near] = frame.view.depth_keys.map(Vec4::splat);
-        let disc = Vec4::splat(splat.disc);
+        let (disc, shown) = (Vec4::splat(splat.disc), Vec4::splat(frame.view.shown(splat.disc)));
         cover.each(|block| {
-            let inside = block.inside & block.depth_key.cmpgt(far) & block.depth_key.cmple(near);
+            let shown = block.depth_key.min(shown);
+            let inside = block.inside & shown.cmpgt(far) & shown.cmple(near);
             let occluding = block.depth_key.min(disc) * factor - shift;
             let depth_key = &mut self.depth_keys[block.index];
             *depth_key = Vec4::select(inside, depth_key.max(occluding), *depth_key);
@@ -142,6 +143,7 @@ impl Tile {
         let [far, near] = frame.view.depth_keys.map(Vec4::splat);
         let shown = Vec4::splat(frame.view.shown(splat.disc));
         cover.each(|Block { index, distance, depth_key, inside }| {
+            let depth_key = depth_key.min(shown);
             let passed = inside
                 & depth_key.cmpge(self.depth_keys[index])
                 & depth_key.cmpgt(far)
@@ -152,7 +154,7 @@ impl Tile {
                 sum[index] += weight * attribute;
             }
             if DEPTH_KEYS {
-                self.sums[7][index] += weight * depth_key.min(shown);
+                self.sums[7][index] += weight * depth_key;
             }
         });
     }

@@ -22,10 +22,9 @@ pub(super) struct Sums {
 }
 
 impl Sums {
-    /// Contribution of `splat` with weight `weight` where its plane is at distance `depth`. With [`Shading::Overlap`] every weight is 1.
+    /// Contribution of `splat` with weight `weight` at distance `depth`. With [`Shading::Overlap`] every weight is 1.
     pub fn of(projector: &Projector, splat: &Splat, weight: f64, depth: f64) -> Self {
         let weight = if projector.settings.shading == Shading::Overlap { 1.0 } else { weight };
-        let depth = projector.shown(splat, depth);
         Self {
             weight,
             normal: weight * splat.normal,

@@ -200,7 +200,8 @@ impl<'a> ErrorModel<'a> {
         let value = splat.plane.dot(DVec3::new(1.0, at.x, at.y));
         let error = self.rounding * splat.secant;
         if !self.projector.has_inverse_depth() {
-            return Some((value, error * (value.abs() + splat.distance.abs()), true));
+            let (depth, error) = self.shown(splat, value, error * (value.abs() + splat.distance.abs()));
+            return Some((depth, error, true));
         }
         let value_error = error * (value.abs() + 1.0 / splat.distance);
         if value.is_nan() || value <= -value_error {
@@ -208,6 +209,14 @@ impl<'a> ErrorModel<'a> {
         }
         // At the plane's horizon: the farthest distance that float32 resolves.
         let depth = if value > 0.0 { 1.0 / value } else { 1.0 / value_error };
-        Some((depth, error * depth * (1.0 + depth / splat.distance), value > value_error))
+        let (depth, error) = self.shown(splat, depth, error * depth * (1.0 + depth / splat.distance));
+        Some((depth, error, value > value_error))
+    }
+
+    /// Depth of a fragment, and its error bound, where the plane is at `depth` with this error bound: see [`Projector::shown`].
+    fn shown(&self, splat: &Splat, depth: f64, error: f64) -> (f64, f64) {
+        let [low, shown, high] =
+            [depth - error, depth, depth + error].map(|depth| self.projector.shown(splat, depth));
+        (shown, (high - shown).max(shown - low).max(self.rounding * splat.distance.abs()))
     }
 }

@@ -120,7 +120,7 @@ impl Projector {
         rays.y_axis.length().max(rays.z_axis.length())
     }
 
-    /// The depth that a fragment of `splat` shows where its plane is at `depth`: see [`Settings::MOST_RISE`].
+    /// The depth of a fragment of `splat` where its plane is at `depth`: see [`Settings::MOST_RISE`].
     pub(super) fn shown(&self, splat: &Splat, depth: f64) -> f64 {
         let rise = Settings::MOST_RISE * self.pixel_width();
         depth.max(if self.depth.perspective { splat.nearest / (1.0 + rise) } else { splat.nearest - rise })
@@ -131,7 +131,7 @@ impl Projector {
         self.depth.perspective && !self.settings.splatting.footprint.is_sprite()
     }
 
-    /// Distance along the ray at pixel position `at` to a splat's plane; `None` behind the eye or outside the clip volume.
+    /// Depth of a splat's fragment at pixel position `at`; `None` behind the eye or outside the clip volume.
     pub(super) fn depth_of(&self, splat: &Splat, at: DVec2) -> Option<f64> {
         let value = splat.plane.dot(DVec3::new(1.0, at.x, at.y));
         let distance = if !self.has_inverse_depth() {
@@ -141,6 +141,7 @@ impl Projector {
         } else {
             return None;
         };
+        let distance = self.shown(splat, distance);
         // An infinite far plane would admit the horizon, where there is nothing to see.
         (distance.is_finite() && (self.depth.near..=self.depth.far).contains(&distance)).then_some(distance)
     }

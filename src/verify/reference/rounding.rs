@@ -52,7 +52,7 @@ pub(super) struct RoundingSums {
 impl RoundingSums {
     /// Contribution of one splat.
     pub fn of(model: &ErrorModel, c: &Candidate, weight: &Weight) -> Self {
-        let depth = model.projector.shown(c.splat, c.depth);
+        let depth = c.depth;
         let depth_weight =
             if model.projector.depth.perspective { weight.value / depth } else { weight.value };
         Self {
