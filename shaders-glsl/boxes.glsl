@@ -8,9 +8,13 @@
 
 #ifdef COMPUTE
 
+#include "lib/frame.glsl"
 #define BOX_ACCESS
 #include "lib/box.glsl"
 #include "lib/cluster.glsl"
+#include "lib/revealed_tiles.glsl"
+
+layout(constant_id = 80) const bool OCCLUSION_CULLING = false; // the boxes of clusters have an upper bound of their κ, from pass cull
 #ifdef SUBGROUPS
 layout(set = 1, binding = 6, std430) writeonly buffer Boxes { Box boxes[]; };
 #endif
@@ -26,7 +30,7 @@ layout(push_constant) uniform Level {
     uint number;      // of this level, from 0 for splats
     uint loaded;      // level of clusters: its first box in the range that is read
     uint nodes;       // level of clusters: first box of the level below, which is written, too
-    uint fronts;      // 1: without splats that face away
+    uint fronts;      // 1: without splats that face away; 2: as well, if pass hidden has revealed clusters
 } level;
 
 // Corners of boxes, and the bits of their nearest κ.
@@ -61,15 +65,18 @@ Bounds bounds_of_siblings(uint first) {
 
 void main() {
     uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    if (i >= level.count) return;
+    if (i >= level.count || OCCLUSION_CULLING && level.fronts == 2 && revealed.listed_count == 0) return;
     if (level.number != CLUSTER_LEVEL) {
         boxes[level.start + i] = box_of(bounds_of_siblings(FAN_OUT * i));
         return;
     }
     // Padding has no cluster.
     bool exists = CLUSTER_SIZE * i < level.finer_count;
-    bool is_culled = CLUSTERS && exists && load_box(level.loaded + i).w == CULLED_CLUSTER;
+    Box cluster = CLUSTERS && exists ? load_box(level.loaded + i) : EMPTY_BOX;
+    bool is_culled = cluster.w == CULLED_CLUSTER;
     Bounds all = EMPTY;
+    // Blocks have the same order in a tile, and sums the same order of terms, whatever is hidden.
+    if (OCCLUSION_CULLING) all.nearest = cluster.z;
     uint end = exists && !is_culled ? FAN_OUT * (i + 1) : 0;
     [[dont_unroll]] for (uint node = FAN_OUT * i; node < end; node++) {
         Bounds bounds = bounds_of_siblings(FAN_OUT * node);

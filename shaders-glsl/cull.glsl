@@ -1,5 +1,5 @@
 // Cull: lists the clusters of surfels that may have splats, by their bounding boxes and normal cones. The CPU has culled groups of them
-// (src/frame/group_culling.rs).
+// (src/frame/group_culling.rs). OCCLUSION_CULLING: those that were hidden in the last frame wait for pass hidden.
 #version 450
 #pragma variant TILES
 #extension GL_GOOGLE_include_directive : require
@@ -21,46 +21,18 @@ uint group_instance;
 
 layout(local_size_x = 64) in;
 
-layout(constant_id = 1) const bool CULL_BACK = false;
-layout(constant_id = 64) const bool BOUNDED = false; // the scene has bounds of its clusters
-
-// Bounds of the surfels of a cluster, without invalid ones.
-struct Cluster {
-    vec4 low;  // least corner of the centres; .w is the largest radius, below 0 if there is no surfel
-    vec4 high; // greatest corner; .w is the sine of the angle from the cone's axis within which all normals are, 2 if there is no such cone
-    vec4 axis; // of the normal cone
-};
-
-// Consecutive clusters of an instance.
-struct Group {
-    uint first;    // first cluster, in the chunk
-    uint count;    // clusters
-    uint slot;     // of the first cluster in the chunk's range of the frame's splat list
-    uint instance; // in the descriptor set, or NO_INSTANCE
-};
-
-// Instance of a group without clusters, whose slots are empty.
-const uint NO_INSTANCE = ~0u;
-
-layout(set = 0, binding = 23, std430) readonly buffer Groups { Group groups[]; };
-layout(set = 0, binding = 22, std430) readonly buffer Clusters { Cluster clusters[]; };
+#include "lib/cluster_bounds.glsl"
 #ifdef TILES
+#define HIDDEN_ACCESS
+#include "lib/hidden_clusters.glsl"
 layout(set = 1, binding = 6, std430) writeonly buffer Boxes { Box boxes[]; };
 #endif
 
-// Bound of the relative rounding errors of a sum of three products.
-const float ROUNDING = 1e-6;
+layout(constant_id = 1) const bool CULL_BACK = false;
+layout(constant_id = 64) const bool BOUNDED = false; // the scene has bounds of its clusters
+
 // Margin of squared distances, for rounding of the box's corners and of the distances.
 const float LEVEL_ROUNDING = 1e-4;
-
-// Bounds of the values of gradient·p + constant for points p in a box.
-vec2 bounds_on(vec3 gradient, float constant, vec3 low, vec3 high) {
-    vec3 a = gradient * low, b = gradient * high;
-    vec3 least = min(a, b), most = max(a, b);
-    vec3 size = max(abs(least), abs(most));
-    float margin = ROUNDING * (size.x + size.y + size.z + abs(constant));
-    return vec2(least.x + least.y + least.z + constant - margin, most.x + most.y + most.z + constant + margin);
-}
 
 // Whether all splats of discs with centres in the box are beyond the side of the viewport at pixel `side` of an axis; `outward` is −1 for the
 // low side.
@@ -79,8 +51,7 @@ bool is_beyond(uint axis, float outward, float side, float reach, float margin, 
 
 bool is_outside(float reach, vec3 low, vec3 high) {
     if (PERSPECTIVE && !(bounds_on(view.rows_hi[2].xyz, 0.0, low, high).x >= 2.0 * reach * length(view.rows_hi[2].xyz))) return false;
-    // The low-pass filter, the rounding of whole sprites, and rounding errors.
-    float margin = largest_stretch() * frame.cutoff * sqrt(frame.attribute_lowpass + frame.visibility_lowpass) + 2.0;
+    float margin = splat_margin();
     for (uint axis = 0; axis < 2; axis++) {
         if (is_beyond(axis, -1.0, 0.0, reach, margin, low, high)) return true;
         if (is_beyond(axis, 1.0, frame.viewport[axis], reach, margin, low, high)) return true;
@@ -118,7 +89,8 @@ bool has_drawn_level(uint first, uint last, vec3 low, vec3 high) {
 uint cull_reason(Cluster cluster, uint first, uint last) {
     float radius = cluster.low.w;
     if (radius < 0.0) return INVALID;
-    vec3 low = (cluster.low.xyz - view.eye_hi.xyz) - view.eye_lo.xyz, high = (cluster.high.xyz - view.eye_hi.xyz) - view.eye_lo.xyz;
+    CentreBox centres = centres_of(cluster);
+    vec3 low = centres.low, high = centres.high;
     if (HAS_LEVELS && !has_drawn_level(first, last, low, high)) return LEVEL;
     // Discs may be moved by ε along the camera's axis.
     float moved = frame.epsilon * radius;
@@ -135,7 +107,7 @@ void main() {
     if (index >= chunk.group_count) return;
     Group group = groups[index];
     if (lane >= group.count) return;
-    if (index == 0 && lane == 0) layers = 1;
+    if (index == 0 && lane == 0) layers = revealed_layers = 1;
     bool exists = group.instance != NO_INSTANCE;
     group_instance = exists ? group.instance : 0;
     uint cluster = group.first + lane, first = CLUSTER_SIZE * cluster, id = chunk.first_id + first;
@@ -144,7 +116,17 @@ void main() {
     if (exists && BOUNDED) reason = cull_reason(clusters[id / CLUSTER_SIZE], id, id + surfels - 1);
     uint slot = group.slot + lane;
 #ifdef TILES
-    boxes[chunk.first_node + slot] = Box(EMPTY_BOX.xyz, reason == DRAWN ? EMPTY_BOX.w : CULLED_CLUSTER);
+    uint node = chunk.first_node + slot;
+    boxes[node] = Box(EMPTY_BOX.xyz, reason == DRAWN ? EMPTY_BOX.w : CULLED_CLUSTER);
+    if (OCCLUSION_CULLING && exists && BOUNDED && reason == DRAWN) {
+        bool was_hidden = hidden_clusters[hidden_index(group.instance, cluster)] != 0;
+        float key = nearest_key_of(clusters[id / CLUSTER_SIZE]);
+        // Not 0, as of culled clusters.
+        uint bound = floatBitsToUint(key < NEVER_HIDDEN ? key : LEAST_BOUND);
+        boxes[node] = Box(EMPTY_BOX.xy, bound, was_hidden ? CULLED_CLUSTER : EMPTY_BOX.w);
+        // Pass hidden draws it, or counts it.
+        if (was_hidden) return;
+    }
 #endif
     if (reason == DRAWN) {
         uint entry = atomicAdd(visible_count, 1);

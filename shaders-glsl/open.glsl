@@ -1,6 +1,7 @@
-// Open: lists the marked tiles for a dispatch over these: those that sides has opened, or those with edges.
+// Open: lists the marked tiles for a dispatch over these: those that sides has opened, those with edges, or those of revealed clusters.
 #version 450
 #pragma variant EDGES COMPUTE
+#pragma variant REVEALED COMPUTE
 #extension GL_GOOGLE_include_directive : require
 
 #ifdef COMPUTE
@@ -9,6 +10,9 @@
 #ifdef EDGES
 #include "lib/edge_tiles.glsl"
 #define LIST edges
+#elif defined(REVEALED)
+#include "lib/revealed_tiles.glsl"
+#define LIST revealed
 #else
 #include "lib/open_tiles.glsl"
 #define LIST open

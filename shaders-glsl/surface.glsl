@@ -1,5 +1,6 @@
 // Surface: runs visibility, attribute and normalize per tile in one dispatch, without intermediate targets (zwicker2004 §6). Frames that
-// cull some splats that face away first draw those that face the eye; a second dispatch draws open tiles again. MIXED: pass behind follows.
+// cull some splats that face away first draw those that face the eye, then once more in the tiles that revealed clusters may change; the last
+// dispatch draws open tiles again. MIXED: pass behind follows.
 #version 450
 #pragma variant SUBGROUPS COMPUTE
 #extension GL_GOOGLE_include_directive : require
@@ -19,6 +20,7 @@
 #include "lib/tile_attribute.glsl"
 #include "lib/open_tiles.glsl"
 #include "lib/edge_tiles.glsl"
+#include "lib/revealed_tiles.glsl"
 
 layout(set = 1, binding = 5, std430) buffer Coverage { uint coverage[]; };
 
@@ -55,9 +57,15 @@ void store_key(uvec2 origin) {
     if (lane == 0) open.tiles[tile_index(origin / TILE)].key = is_covered ? floatBitsToUint(visibility_cull_key) : 0;
 }
 
+// First pixel of the workgroup's tile.
+uvec2 origin_of_workgroup() {
+    if (has_fronts()) return LISTED_ORIGIN(open);
+    return is_of_revealed() ? LISTED_ORIGIN(revealed) : tile_origin();
+}
+
 void main() {
     load_frame();
-    uvec2 origin = has_fronts() ? LISTED_ORIGIN(open) : tile_origin();
+    uvec2 origin = origin_of_workgroup();
     if (has_depths()) load_depths(origin);
     compute_visibility(origin);
     if (MIXED || is_of_fronts()) store_depths(origin);

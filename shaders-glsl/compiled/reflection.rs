@@ -195,8 +195,8 @@ pub static BOXES_COMPUTE: Module = Module {
     name: "boxes_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("boxes_compute.spv"),
-    constants: &[63],
-    resources: &[(&resource::BOXES, true)],
+    constants: &[63, 80],
+    resources: &[(&resource::BOXES, true), (&resource::REVEALED_TILES, true)],
     push: size_of::<layout::Level>() as u32,
 };
 
@@ -205,8 +205,8 @@ pub static BOXES_SUBGROUPS_COMPUTE: Module = Module {
     name: "boxes_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("boxes_subgroups_compute.spv"),
-    constants: &[63],
-    resources: &[(&resource::BOXES, true), (&resource::BOX_TEXELS, false)],
+    constants: &[63, 80],
+    resources: &[(&resource::BOXES, true), (&resource::BOX_TEXELS, false), (&resource::REVEALED_TILES, true)],
     push: size_of::<layout::Level>() as u32,
 };
 
@@ -305,8 +305,8 @@ pub static CULL_TILES_COMPUTE: Module = Module {
     name: "cull_tiles_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("cull_tiles_compute.spv"),
-    constants: &[0, 1, 2, 15, 37, 64, 73],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBLE_CLUSTERS, true), (&resource::CLUSTERS, false), (&resource::GROUPS, false), (&resource::BOXES, true), (&resource::COUNTS, true)],
+    constants: &[0, 1, 2, 15, 37, 64, 73, 79, 80],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBLE_CLUSTERS, true), (&resource::CLUSTERS, false), (&resource::GROUPS, false), (&resource::HIDDEN_CLUSTERS, true), (&resource::BOXES, true), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -457,6 +457,16 @@ pub static FOOTPRINT_TILES_COMPUTE: Module = Module {
     spirv: spirv!("footprint_tiles_compute.spv"),
     constants: &[0, 1, 2, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 21, 22, 23, 26, 27, 37, 45, 46, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 67, 68, 70, 73, 78, 79],
     resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::SPLAT_ATTRIBUTES, true), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::WEIGHTS, false), (&resource::SPLAT_BOXES, true), (&resource::ORDER, false), (&resource::VISIBLE_CLUSTERS, false), (&resource::COUNTS, true)],
+    push: size_of::<layout::Chunk>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/hidden.glsl`.
+pub static HIDDEN_COMPUTE: Module = Module {
+    name: "hidden_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("hidden_compute.spv"),
+    constants: &[0, 2, 15, 37, 79],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBLE_CLUSTERS, true), (&resource::CLUSTERS, false), (&resource::GROUPS, false), (&resource::HIDDEN_CLUSTERS, true), (&resource::BOXES, true), (&resource::OPEN_TILES, true), (&resource::REVEALED_TILES, true), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -667,6 +677,16 @@ pub static OPEN_EDGES_COMPUTE: Module = Module {
     spirv: spirv!("open_edges_compute.spv"),
     constants: &[],
     resources: &[(&resource::FRAME, false), (&resource::EDGE_TILES, true)],
+    push: 0,
+};
+
+/// The compute stage of `shaders-glsl/open.glsl`.
+pub static OPEN_REVEALED_COMPUTE: Module = Module {
+    name: "open_revealed_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("open_revealed_compute.spv"),
+    constants: &[],
+    resources: &[(&resource::FRAME, false), (&resource::REVEALED_TILES, true)],
     push: 0,
 };
 
@@ -895,8 +915,8 @@ pub static SURFACE_COMPUTE: Module = Module {
     name: "surface_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 67, 68, 70, 72, 76, 79],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::OPEN_TILES, true), (&resource::EDGE_TILES, true)],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 67, 68, 70, 72, 76, 79, 80],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::OPEN_TILES, true), (&resource::EDGE_TILES, true), (&resource::REVEALED_TILES, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
 
@@ -905,8 +925,8 @@ pub static SURFACE_SUBGROUPS_COMPUTE: Module = Module {
     name: "surface_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 67, 68, 70, 72, 76, 79],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false), (&resource::OPEN_TILES, true), (&resource::EDGE_TILES, true)],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 67, 68, 70, 72, 76, 79, 80],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false), (&resource::OPEN_TILES, true), (&resource::EDGE_TILES, true), (&resource::REVEALED_TILES, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
 
@@ -1082,6 +1102,8 @@ pub mod constant {
     pub const NORMAL_OFFSET: u32 = 52;
     /// `NORMAL_STRIDE`, first in `shaders-glsl/attribute.glsl`.
     pub const NORMAL_STRIDE: u32 = 53;
+    /// `OCCLUSION_CULLING`, first in `shaders-glsl/boxes.glsl`.
+    pub const OCCLUSION_CULLING: u32 = 80;
     /// `OPENS_TILES`, first in `shaders-glsl/sides.glsl`.
     pub const OPENS_TILES: u32 = 71;
     /// `OUT_DEPTH`, first in `shaders-glsl/behind.glsl`.
@@ -1296,6 +1318,15 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
+    /// `HiddenClusters`, first in `shaders-glsl/cull.glsl`.
+    pub static HIDDEN_CLUSTERS: Resource = Resource {
+        name: "HiddenClusters",
+        set: 0,
+        binding: 24,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
     /// `IncompleteFrame`, first in `shaders-glsl/attribute.glsl`.
     pub static INCOMPLETE_FRAME: Resource = Resource {
         name: "IncompleteFrame",
@@ -1377,7 +1408,7 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
     };
 
-    /// `OpenTiles`, first in `shaders-glsl/open.glsl`.
+    /// `OpenTiles`, first in `shaders-glsl/hidden.glsl`.
     pub static OPEN_TILES: Resource = Resource {
         name: "OpenTiles",
         set: 1,
@@ -1411,6 +1442,15 @@ pub mod resource {
         binding: 4,
         kind: DescriptorType::STORAGE_BUFFER,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
+    };
+
+    /// `RevealedTiles`, first in `shaders-glsl/boxes.glsl`.
+    pub static REVEALED_TILES: Resource = Resource {
+        name: "RevealedTiles",
+        set: 1,
+        binding: 28,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
     /// `ScreenClips`, first in `shaders-glsl/attribute.glsl`.
@@ -1961,7 +2001,7 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(AtomicOptions, seed) == 4);
     const _: () = assert!(std::mem::size_of::<AtomicOptions>() == 8);
 
-    /// `Chunk`, 44 bytes, first in `shaders-glsl/attribute.glsl`.
+    /// `Chunk`, 48 bytes, first in `shaders-glsl/attribute.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Chunk {
@@ -1987,6 +2027,8 @@ pub mod layout {
         pub first_node: u32,
         /// Byte 40.
         pub group_count: u32,
+        /// Byte 44.
+        pub revealed: u32,
     }
     const _: () = assert!(std::mem::offset_of!(Chunk, count) == 0);
     const _: () = assert!(std::mem::offset_of!(Chunk, first_id) == 4);
@@ -1999,7 +2041,8 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Chunk, instance_count) == 32);
     const _: () = assert!(std::mem::offset_of!(Chunk, first_node) == 36);
     const _: () = assert!(std::mem::offset_of!(Chunk, group_count) == 40);
-    const _: () = assert!(std::mem::size_of::<Chunk>() == 44);
+    const _: () = assert!(std::mem::offset_of!(Chunk, revealed) == 44);
+    const _: () = assert!(std::mem::size_of::<Chunk>() == 48);
 
     /// `Cluster`, 48 bytes, first in `shaders-glsl/cull.glsl`.
     #[repr(C)]
@@ -2030,18 +2073,18 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Composite, origin) == 16);
     const _: () = assert!(std::mem::size_of::<Composite>() == 24);
 
-    /// `Counts`, 28 bytes, first in `shaders-glsl/cull.glsl`.
+    /// `Counts`, 32 bytes, first in `shaders-glsl/cull.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Counts {
         /// Byte 0.
-        pub culled: [u32; 6],
-        /// Byte 24.
+        pub culled: [u32; 7],
+        /// Byte 28.
         pub in_clusters: u32,
     }
     const _: () = assert!(std::mem::offset_of!(Counts, culled) == 0);
-    const _: () = assert!(std::mem::offset_of!(Counts, in_clusters) == 24);
-    const _: () = assert!(std::mem::size_of::<Counts>() == 28);
+    const _: () = assert!(std::mem::offset_of!(Counts, in_clusters) == 28);
+    const _: () = assert!(std::mem::size_of::<Counts>() == 32);
 
     /// `Darken`, 8 bytes, first in `shaders-glsl/darken.glsl`.
     #[repr(C)]
@@ -2318,7 +2361,7 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Materials, count) == 0);
     const _: () = assert!(std::mem::size_of::<Materials>() == 4);
 
-    /// `OpenTiles`, 20 bytes, first in `shaders-glsl/open.glsl`.
+    /// `OpenTiles`, 20 bytes, first in `shaders-glsl/hidden.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct OpenTiles {
@@ -2361,6 +2404,28 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(OrderStep, runs) == 24);
     const _: () = assert!(std::mem::offset_of!(OrderStep, digit) == 28);
     const _: () = assert!(std::mem::size_of::<OrderStep>() == 32);
+
+    /// `RevealedTiles`, 20 bytes, first in `shaders-glsl/boxes.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct RevealedTiles {
+        /// Byte 0.
+        pub columns: u32,
+        /// Byte 4.
+        pub rows: u32,
+        /// Byte 8.
+        pub layers: u32,
+        /// Byte 12.
+        pub listed_count: u32,
+        /// Byte 16.
+        pub all: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(RevealedTiles, columns) == 0);
+    const _: () = assert!(std::mem::offset_of!(RevealedTiles, rows) == 4);
+    const _: () = assert!(std::mem::offset_of!(RevealedTiles, layers) == 8);
+    const _: () = assert!(std::mem::offset_of!(RevealedTiles, listed_count) == 12);
+    const _: () = assert!(std::mem::offset_of!(RevealedTiles, all) == 16);
+    const _: () = assert!(std::mem::size_of::<RevealedTiles>() == 20);
 
     /// `ScalarOptions`, 8 bytes, first in `shaders-glsl/colour_map.glsl`.
     #[repr(C)]
@@ -2604,7 +2669,7 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(VisibleCluster, instance) == 8);
     const _: () = assert!(std::mem::size_of::<VisibleCluster>() == 12);
 
-    /// `VisibleClusters`, 16 bytes, first in `shaders-glsl/cull.glsl`.
+    /// `VisibleClusters`, 32 bytes, first in `shaders-glsl/cull.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct VisibleClusters {
@@ -2616,11 +2681,23 @@ pub mod layout {
         pub layers: u32,
         /// Byte 12.
         pub visible_count: u32,
+        /// Byte 16.
+        pub revealed_columns: u32,
+        /// Byte 20.
+        pub revealed_rows: u32,
+        /// Byte 24.
+        pub revealed_layers: u32,
+        /// Byte 28.
+        pub revealed_count: u32,
     }
     const _: () = assert!(std::mem::offset_of!(VisibleClusters, columns) == 0);
     const _: () = assert!(std::mem::offset_of!(VisibleClusters, rows) == 4);
     const _: () = assert!(std::mem::offset_of!(VisibleClusters, layers) == 8);
     const _: () = assert!(std::mem::offset_of!(VisibleClusters, visible_count) == 12);
-    const _: () = assert!(std::mem::size_of::<VisibleClusters>() == 16);
+    const _: () = assert!(std::mem::offset_of!(VisibleClusters, revealed_columns) == 16);
+    const _: () = assert!(std::mem::offset_of!(VisibleClusters, revealed_rows) == 20);
+    const _: () = assert!(std::mem::offset_of!(VisibleClusters, revealed_layers) == 24);
+    const _: () = assert!(std::mem::offset_of!(VisibleClusters, revealed_count) == 28);
+    const _: () = assert!(std::mem::size_of::<VisibleClusters>() == 32);
 
 }

@@ -6,14 +6,15 @@ const uint BACK = 2;      // the normal faces away, back faces are culled, and t
 const uint OUTSIDE = 3;   // outside the viewport, or without an area on it
 const uint INVALID = 4;   // marked by a radius of 0, or with an image too large for floats
 const uint LEVEL = 5;     // another level of detail is drawn at its position
-const uint DRAWN = 6;
+const uint HIDDEN = 6;    // its cluster is behind the nearest surface everywhere
+const uint DRAWN = 7;
 
 #ifdef COMPUTE
 
 layout(constant_id = 2) const bool COUNT = false;
 
 layout(set = 2, binding = 5, std430) buffer Counts {
-    uint culled[6];
+    uint culled[7];
     uint in_clusters; // of the culled ones, those of culled clusters
 };
 

@@ -21,6 +21,7 @@ layout(push_constant) uniform Chunk {
     uint instance_count;  // instances in this frame, of those in the descriptor set
     uint first_node;      // node of the first cluster of the range in the bound levels of the frame's box hierarchy
     uint group_count;     // groups of clusters, of all instances
+    uint revealed;        // 1: only clusters that pass hidden has revealed
 } chunk;
 
 #ifdef VERTEX
@@ -44,6 +45,10 @@ uint instance_index() {
     return INSTANCED ? INSTANCE : 0;
 #endif
 }
+
+#ifdef PER_CLUSTER
+#include "lib/cluster_entry.glsl"
+#endif
 
 // Words of the header of a buffer of per-instance lists: the length of each list.
 const uint LIST_HEADER = 64;

@@ -18,7 +18,7 @@ layout(push_constant) uniform Hierarchy {
     uint slices;
     uint most_steps; // of a walk
     uint frame_number;
-    uint fronts; // 1: only splats that face the eye, before pass sides
+    uint fronts; // 1: only splats that face the eye, before pass sides; 2: in the tiles that pass hidden has marked
 } hierarchy;
 
 layout(constant_id = 31) const bool COVERAGE = false; // α is the covered part of a pixel
@@ -26,8 +26,9 @@ layout(constant_id = 47) const bool SLICED = false;
 layout(constant_id = 72) const bool MIXED = false; // pixels at edges show the surface behind, too
 #ifdef FRONT_TILES
 layout(constant_id = 68) const bool CULL_AUTO = false; // pass sides culls some splats that face away
+layout(constant_id = 80) const bool OCCLUSION_CULLING = false; // pass hidden culls clusters
 #else
-const bool CULL_AUTO = false;
+const bool CULL_AUTO = false, OCCLUSION_CULLING = false;
 #endif
 
 // Whether this dispatch resumes the state of the previous slice, and whether no further slice follows.
@@ -38,6 +39,11 @@ bool is_resumed() {
 // Whether this dispatch, the one before pass sides, draws only splats that face the eye.
 bool is_of_fronts() {
     return CULL_AUTO && hierarchy.fronts != 0;
+}
+
+// Whether this dispatch draws them in the tiles that revealed clusters may change.
+bool is_of_revealed() {
+    return CULL_AUTO && OCCLUSION_CULLING && hierarchy.fronts == 2;
 }
 
 // Whether the depths of the splats that face the eye are known: others are to be added.

@@ -14,6 +14,11 @@ layout(set = 0, binding = 21, std430) VISIBLE_ACCESS buffer VisibleClusters {
     uint rows;
     uint layers;
     uint visible_count;
+    // The same for clusters that were hidden in the last frame, and are not in this one (pass hidden): they follow the others.
+    uint revealed_columns;
+    uint revealed_rows;
+    uint revealed_layers;
+    uint revealed_count;
     VisibleCluster visible_clusters[];
 };
 
@@ -23,14 +28,4 @@ const uint CLUSTER_COLUMNS = 32768;
 #ifdef PER_CLUSTER
 VisibleCluster visible;
 #define INSTANCE (CLUSTERS ? visible.instance : chunk.first_instance + gl_WorkGroupID.z)
-
-// Entry of the invocation in the order of the chunk's surfels, which is that of storage unless lib/order.glsl has another; ~0 in workgroups
-// beyond the list. Sets the visible cluster.
-uint entry_of_invocation() {
-    if (!CLUSTERS) return gl_GlobalInvocationID.x;
-    uint index = CLUSTER_COLUMNS * gl_WorkGroupID.y + gl_WorkGroupID.x;
-    if (index >= visible_count) return ~0u;
-    visible = visible_clusters[index];
-    return CLUSTER_SIZE * visible.cluster + gl_LocalInvocationID.x;
-}
 #endif

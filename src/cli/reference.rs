@@ -52,5 +52,14 @@ fn counts(counts: &reference::Counts) -> SplatCounts {
     // Surfels are numbered in 32 bits.
     let [drawn, behind, eye_plane] = [counts.drawn, counts.behind, counts.eye_plane].map(|n| n as u32);
     let [back, outside, invalid] = [counts.back, counts.outside, counts.invalid].map(|n| n as u32);
-    SplatCounts { drawn, behind, eye_plane, back, outside, invalid, other_level: counts.other_level as u32 }
+    SplatCounts {
+        drawn,
+        behind,
+        eye_plane,
+        back,
+        outside,
+        invalid,
+        other_level: counts.other_level as u32,
+        hidden: 0,
+    }
 }

@@ -177,7 +177,7 @@ fn pass((name, ms): (&'static str, Statistics)) -> Value {
 /// Counts of points, each of which counts once: read = dropped + culled + drawn. Surfels of levels of detail count as points do.
 fn tally(loaded: &LoadedModel, counts: SplatCounts) -> Value {
     let Dropped { position, transparent, thinned, filtered } = loaded.dropped;
-    let SplatCounts { drawn, behind, eye_plane, back, outside, invalid, other_level } = counts;
+    let SplatCounts { drawn, behind, eye_plane, back, outside, invalid, other_level, hidden } = counts;
     let Estimated { unused, outliers, .. } = loaded.estimated;
     json!({
         "read": loaded.read,
@@ -187,6 +187,7 @@ fn tally(loaded: &LoadedModel, counts: SplatCounts) -> Value {
         "culled": {
             "behind": behind, "eye_plane": eye_plane, "back": back, "outside": outside, "invalid": invalid,
             "other_level": other_level,
+            "hidden": hidden,
         },
         "drawn": drawn,
     })

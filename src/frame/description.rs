@@ -75,6 +75,8 @@ pub fn describe(
     let distant = uniforms.is_distant();
     let variant =
         Variant { distant, workgroup: workgroup.unwrap_or_default(), ..variant }.with_slices(sliced);
+    let surfels = scenes.iter().map(|placed| placed.scene.count()).sum();
+    let variant = variant.with_occlusion_culling(surfels, options.size.map(u64::from).iter().product());
     check_lookups(&variant, scenes)?;
     let instanced = !uniforms.instances.is_empty();
     let scenes = streams.into_iter().map(|streams| SceneVariant::new(variant, streams, instanced)).collect();

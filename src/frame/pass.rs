@@ -111,6 +111,8 @@ pub enum Domain {
     Clusters,
     /// One workgroup per cluster in the list of visible ones.
     VisibleClusters,
+    /// One workgroup per cluster in the list of those that pass hidden has revealed.
+    RevealedClusters,
     /// One invocation per pixel, for each chunk of a scene's surfels.
     PixelsOfSurfels,
     /// One invocation per segment.
@@ -141,6 +143,8 @@ pub enum Domain {
     OpenTiles,
     /// One workgroup per tile in the list of those with edges.
     EdgeTiles,
+    /// One workgroup per tile in the list of those of revealed clusters, for the splats that face the eye.
+    RevealedTiles,
     /// Elements of a level, as the steps of the pass define.
     Level,
     /// One triangle per splat.
@@ -172,6 +176,7 @@ impl Domain {
         match self {
             Self::OpenTiles => Some(Resource::OpenTiles),
             Self::EdgeTiles => Some(Resource::EdgeTiles),
+            Self::RevealedTiles => Some(Resource::RevealedTiles),
             _ => None,
         }
     }
@@ -182,6 +187,7 @@ impl Domain {
             Self::Surfels
             | Self::SurfelSlots
             | Self::VisibleClusters
+            | Self::RevealedClusters
             | Self::PixelsOfSurfels
             | Self::SplatTriangles
             | Self::Points => Scope::Surfels,
@@ -197,6 +203,7 @@ impl Domain {
             | Self::TileSlots
             | Self::OpenTiles
             | Self::EdgeTiles
+            | Self::RevealedTiles
             | Self::Level
             | Self::FullScreen => Scope::View,
         }

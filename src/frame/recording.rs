@@ -6,8 +6,9 @@ use super::scene_resources::{InstanceRun, SceneResources};
 use super::splat_list::SplatList;
 use super::targets::RenderTargets;
 use super::variant::{SceneVariant, Variant};
+use super::visible_clusters;
 use crate::vk::shaders::Module;
-use crate::vk::shaders::layout::Hierarchy;
+use crate::vk::shaders::layout::{Chunk, Hierarchy};
 use crate::vk::{
     Access, Buffer, ComputePipeline, DescriptorSet, DrawPipeline, Draws, Encoder, Framebuffer, Recorder, Use,
 };
@@ -22,6 +23,10 @@ const LARGE_WORKGROUPS: u32 = 256;
 /// Workgroups per row of a dispatch over pixels or groups, for which it is CLUSTER_COLUMNS of `lib/visible_clusters.glsl`; within every device's
 /// limits.
 const WORKGROUPS_X: u32 = 32_768;
+
+/// [`Hierarchy::fronts`] of dispatches of the splats that face the eye, and of those in the tiles of revealed clusters.
+pub const FRONTS: u32 = 1;
+pub const REVEALED_FRONTS: u32 = 2;
 
 /// Columns and rows of pixels of a workgroup of passes over pixels (`lib/pixel_group.glsl`).
 const PIXEL_GROUP: [u32; 2] = [16, 4];
@@ -183,7 +188,7 @@ impl PreparedPass {
                     (Domain::Tiles | Domain::FrontTiles, Some(splats)) => {
                         let [columns, rows] = frame.targets.tiles();
                         let slices = [slice, self.slices(frame)];
-                        let fronts = u32::from(domain == Domain::FrontTiles);
+                        let fronts = if domain == Domain::FrontTiles { FRONTS } else { 0 };
                         let hierarchy = splats.hierarchy(slices, frame.most_steps(), frame.number);
                         let hierarchy = Hierarchy { fronts, ..hierarchy };
                         enc.dispatch(pipeline, &sets, &hierarchy, [columns, rows, 1]);
@@ -193,13 +198,14 @@ impl PreparedPass {
                         let hierarchy = splats.hierarchy([0, 1], frame.most_steps(), frame.number);
                         enc.dispatch(pipeline, &sets, &hierarchy, [columns, rows, 1]);
                     }
-                    (Domain::OpenTiles | Domain::EdgeTiles, Some(splats)) => {
+                    (Domain::OpenTiles | Domain::EdgeTiles | Domain::RevealedTiles, Some(splats)) => {
                         let Some(list) = domain.tile_list().and_then(|list| frame.targets.buffer(list))
                         else {
                             continue;
                         };
                         let hierarchy = splats.hierarchy([0, 1], frame.most_steps(), frame.number);
-                        enc.dispatch_indirect(pipeline, &sets, &hierarchy, (list, 0));
+                        let fronts = if domain == Domain::RevealedTiles { REVEALED_FRONTS } else { 0 };
+                        enc.dispatch_indirect(pipeline, &sets, &Hierarchy { fronts, ..hierarchy }, (list, 0));
                     }
                     (Domain::TileSlots, _) => {
                         let [columns, rows] = frame.targets.tiles().map(u64::from);
@@ -217,9 +223,12 @@ impl PreparedPass {
             };
             for mut chunk_run in run.chunks(domain.scope(), self.pass) {
                 let sets = sets_with(chunk_run.set, pyramid.or(chunk_run.counts));
-                if domain == Domain::VisibleClusters {
-                    let Some(workgroups) = chunk_run.visible else { continue };
-                    enc.dispatch_indirect(pipeline, &sets, &chunk_run.chunk, workgroups);
+                if [Domain::VisibleClusters, Domain::RevealedClusters].contains(&domain) {
+                    let Some((list, start)) = chunk_run.visible else { continue };
+                    let revealed = u32::from(domain == Domain::RevealedClusters);
+                    let workgroups = (list, start + u64::from(revealed) * visible_clusters::COUNTS);
+                    let chunk = Chunk { revealed, ..chunk_run.chunk };
+                    enc.dispatch_indirect(pipeline, &sets, &chunk, workgroups);
                     continue;
                 }
                 if domain == Domain::Clusters {
@@ -381,7 +390,7 @@ impl Pass {
             let over = |list| programs.iter().any(|program| program.domain.tile_list() == Some(list));
             let indirect = match resource {
                 Resource::VisibleClusters => !write,
-                Resource::OpenTiles | Resource::EdgeTiles => over(resource),
+                Resource::OpenTiles | Resource::EdgeTiles | Resource::RevealedTiles => over(resource),
                 _ => false,
             };
             (resource, if indirect { access.and_indirect() } else { access })

@@ -76,6 +76,9 @@ pub struct SplatCounts {
     pub invalid: u32,
     /// Of another level of detail than the one that is drawn at their positions, in scenes with levels.
     pub other_level: u32,
+    /// With their cluster behind the nearest surface everywhere, and already in the last frame of the renderer: frames of more surfels than pixels
+    /// cull these.
+    pub hidden: u32,
 }
 
 /// Renders frames of one size on one device, one frame at a time.
@@ -213,8 +216,8 @@ impl Renderer {
 impl SplatCounts {
     /// Counts of so many surfels, of which these are culled.
     pub(crate) fn new(surfels: u64, Counts { culled, .. }: Counts) -> Self {
-        let [behind, eye_plane, back, outside, invalid, other_level] = culled;
+        let [behind, eye_plane, back, outside, invalid, other_level, hidden] = culled;
         let drawn = surfels.saturating_sub(culled.iter().copied().map(u64::from).sum()) as u32;
-        Self { drawn, behind, eye_plane, back, outside, invalid, other_level }
+        Self { drawn, behind, eye_plane, back, outside, invalid, other_level, hidden }
     }
 }

@@ -9,6 +9,8 @@ pub enum Resource {
     Order,
     /// Compute path, per scene: lists of the clusters of surfels that were not culled.
     VisibleClusters,
+    /// Tile path, per scene: which of its clusters were hidden in the last frame, and are in this one.
+    HiddenClusters,
     /// Tile path: bounding boxes of splats, and of the hierarchy's nodes above them.
     Boxes,
     /// Tile path: attributes that sums read of each splat.
@@ -29,6 +31,8 @@ pub enum Resource {
     OpenTiles,
     /// Tile path: the tiles with pixels at edges, after the workgroups of an indirect dispatch over them.
     EdgeTiles,
+    /// Tile path: the tiles that revealed clusters may change, after the workgroups of an indirect dispatch over them.
+    RevealedTiles,
     /// Mask of each pixel's covered samples, if α is coverage; in frames that mix edges also of those of the nearest surface.
     Coverage,
     /// Raster path: depth key of the surface behind in pixels at edges, moved back by ε.
@@ -68,6 +72,7 @@ impl Resource {
             Self::Splats => "splats",
             Self::Order => "order",
             Self::VisibleClusters => "visible clusters",
+            Self::HiddenClusters => "hidden clusters",
             Self::Boxes => "boxes",
             Self::Attributes => "attributes",
             Self::ScreenClips => "screen clips",
@@ -78,6 +83,7 @@ impl Resource {
             Self::Sums1 => "sums1",
             Self::OpenTiles => "open tiles",
             Self::EdgeTiles => "edge tiles",
+            Self::RevealedTiles => "revealed tiles",
             Self::Coverage => "coverage",
             Self::Behind => "behind",
             Self::Nearest => "nearest",
@@ -103,6 +109,7 @@ impl Resource {
             Self::Splats
                 | Self::Order
                 | Self::VisibleClusters
+                | Self::HiddenClusters
                 | Self::Boxes
                 | Self::Attributes
                 | Self::ScreenClips

@@ -332,6 +332,7 @@ impl FrameResources {
             moved: of_host && splats && variant.visibility == Visibility::Axis,
             instanced,
             clusters: variant.clusters,
+            occlusion_culling: variant.occlusion_culling,
             instances: padded_instances(counts[scene]),
         };
         let Self { scenes, disposal, device, view, splats: splat_list, .. } = self;

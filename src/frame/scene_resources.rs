@@ -71,6 +71,8 @@ pub struct Needs {
     pub instanced: bool,
     /// Its clusters of surfels are culled.
     pub clusters: bool,
+    /// Hidden ones, too.
+    pub occlusion_culling: bool,
     /// Number of instances.
     pub instances: u64,
 }
@@ -91,7 +93,10 @@ struct Sets {
 impl Needs {
     /// Whether resources created for these requirements satisfy `others`.
     pub fn satisfies(&self, others: &Self) -> bool {
-        let same = |needs: &Self| (needs.splats, needs.moved, needs.instanced, needs.clusters);
+        let same = |needs: &Self| {
+            let Self { splats, moved, instanced, clusters, occlusion_culling, .. } = *needs;
+            (splats, moved, instanced, clusters, occlusion_culling)
+        };
         let enough = others.instances..=4 * others.instances;
         same(self) == same(others) && enough.contains(&self.instances)
     }
@@ -131,7 +136,10 @@ impl SceneResources {
             counts: None,
             large_triangles: triangles.map(list).transpose()?,
             order: variant.unordered.then(|| SurfelOrder::new(device, scene)).transpose()?,
-            clusters: needs.clusters.then(|| VisibleClusters::new(device, scene, batches)).transpose()?,
+            clusters: needs
+                .clusters
+                .then(|| VisibleClusters::new(device, scene, batches, needs.occlusion_culling))
+                .transpose()?,
             groups: Vec::new(),
             culled: Counts::zeroed(),
             views: needs.instanced.then(views).transpose()?,
@@ -268,6 +276,7 @@ impl SceneResources {
             Resource::Counts => self.counts.as_ref(),
             Resource::Order => self.order.as_ref().map(SurfelOrder::buffer),
             Resource::VisibleClusters => self.clusters.as_ref().map(VisibleClusters::buffer),
+            Resource::HiddenClusters => self.clusters.as_ref().and_then(VisibleClusters::hidden),
             Resource::LargeTriangles => self.large_triangles.as_ref(),
             _ => None,
         };
@@ -285,6 +294,9 @@ impl SceneResources {
             }
             Resource::VisibleClusters => {
                 self.clusters.iter().for_each(|clusters| clusters.clear(enc, batches.clone()));
+            }
+            Resource::HiddenClusters => {
+                self.clusters.iter().for_each(|clusters| clusters.clear_hidden(enc));
             }
             _ => self.buffers(resource).for_each(|buffer| enc.zero(buffer)),
         }

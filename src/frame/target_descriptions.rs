@@ -50,6 +50,7 @@ impl Resource {
             ],
             Self::Order => &[&resource::ORDER],
             Self::VisibleClusters => &[&resource::VISIBLE_CLUSTERS],
+            Self::HiddenClusters => &[&resource::HIDDEN_CLUSTERS],
             Self::Boxes => &[&resource::SPLAT_BOXES, &resource::BOXES, &resource::BOX_TEXELS],
             Self::Attributes => {
                 &[&resource::SPLAT_ATTRIBUTES, &resource::FRAME_ATTRIBUTES, &resource::ATTRIBUTE_TEXELS]
@@ -64,6 +65,7 @@ impl Resource {
             Self::Sums1 => &[&resource::SUMS1, &resource::SUMS1_IMAGE, &resource::SUMS1_INPUT],
             Self::OpenTiles => &[&resource::OPEN_TILES],
             Self::EdgeTiles => &[&resource::EDGE_TILES],
+            Self::RevealedTiles => &[&resource::REVEALED_TILES],
             Self::Coverage => &[&resource::COVERAGE],
             Self::Behind => &[&resource::BEHIND_DEPTHS, &resource::BEHIND_IMAGE],
             Self::Nearest => &[&resource::NEAREST],
@@ -196,8 +198,9 @@ fn compute_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
         let visibility = (variant.cull_auto || variant.mixed).then_some(visibility);
         let open = variant.opens_tiles().then_some(tile_list::OPEN);
         let edges = variant.mixed.then_some(tile_list::EDGES);
+        let revealed = variant.occlusion_culling.then_some(tile_list::REVEALED);
         let coverage = coverage(variant).filter(|_| variant.mixed);
-        return [visibility, open, edges, coverage].into_iter().chain(outputs).collect();
+        return [visibility, open, edges, revealed, coverage].into_iter().chain(outputs).collect();
     }
     if variant.visibility == Visibility::Nearest {
         // State between the slices of the nearest pass: depths and ids of splats.

@@ -1,4 +1,5 @@
-//! Lists of tiles for indirect dispatches (`lib/tile_list.glsl`): those that splats that face away may change, and those with edges.
+//! Lists of tiles for indirect dispatches (`lib/tile_list.glsl`): those that splats that face away may change, those with edges, and those
+//! that revealed clusters may change.
 
 use super::resource::Resource;
 use super::target_descriptions::{Kind, TargetDescription};
@@ -22,6 +23,10 @@ pub const OPEN: TargetDescription = TargetDescription {
 /// Tiles with edges as a target.
 pub const EDGES: TargetDescription =
     TargetDescription { resource: Resource::EdgeTiles, shader: Some(&resource::EDGE_TILES), ..OPEN };
+
+/// Tiles of revealed clusters as a target.
+pub const REVEALED: TargetDescription =
+    TargetDescription { resource: Resource::RevealedTiles, shader: Some(&resource::REVEALED_TILES), ..OPEN };
 
 /// Bytes of the list of a picture of so many tiles.
 pub fn bytes(tiles: u64) -> u64 {

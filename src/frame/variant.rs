@@ -85,6 +85,8 @@ pub struct Variant {
     pub unordered: bool,
     /// Compute path: some scene has bounds of its clusters of surfels, which are culled.
     pub clusters: bool,
+    /// Tile path: clusters that were hidden in the last frame are drawn only where the others do not hide them (two-phase occlusion culling).
+    pub occlusion_culling: bool,
     /// Tile path: some normalization weights are at the corners of surfels' squares.
     pub corners: bool,
     /// Tile path: workgroups of tile passes.
@@ -245,6 +247,7 @@ impl Variant {
                 && streams.iter().any(|streams| streams.curvatures),
             unordered: tiled && streams.iter().any(|streams| streams.unordered),
             clusters: rasterizer == Rasterizer::Compute && streams.iter().any(|streams| streams.clusters),
+            occlusion_culling: false,
             corners: tiled && weights && streams.iter().any(|streams| streams.weights == Some(true)),
             workgroup: TileWorkgroup::default(),
         }
@@ -254,6 +257,14 @@ impl Variant {
     pub fn with_slices(self, sliced: bool) -> Self {
         let sliced = sliced && self.is_tiled();
         Self { sliced, split: self.split || sliced, ..self }
+    }
+
+    /// The variant in frames of so many surfels in a picture of so many pixels: [`Variant::occlusion_culling`] costs as much as it saves where
+    /// surfels are fewer than pixels.
+    pub fn with_occlusion_culling(self, surfels: u64, pixels: u64) -> Self {
+        let can =
+            self.clusters && self.opens_tiles() && !self.distant && self.footprint.is_in_tangent_plane();
+        Self { occlusion_culling: can && surfels > pixels, ..self }
     }
 
     /// Whether passes after shading read depths.
@@ -381,6 +392,7 @@ impl Variant {
             .with(constant::CURVATURES, self.curvatures)
             .with(constant::SLICED, self.sliced)
             .with(constant::CLUSTERS, self.clusters)
+            .with(constant::OCCLUSION_CULLING, self.occlusion_culling)
             .with(constant::FRAME_WEIGHTS, self.weights)
             .with(constant::FRAME_CORNERS, self.corners)
     }
@@ -453,6 +465,7 @@ impl SceneVariant {
                 (&resource::CLUSTERS, self.bounded),
                 (&resource::GROUPS, true),
                 (&resource::VISIBLE_CLUSTERS, true),
+                (&resource::HIDDEN_CLUSTERS, frame.occlusion_culling),
             ],
             Scope::Lines | Scope::Triangles => &[
                 (&resource::VERTICES, true),

@@ -26,7 +26,7 @@ fn check_counts(counts: &Value) {
         counts["dropped"],
         serde_json::json!({ "position": 1, "transparent": 0, "thinned": 0, "filtered": 0, "unused": 0, "outlier": 0 })
     );
-    let culled = serde_json::json!({ "behind": 1, "eye_plane": 1, "back": 1, "outside": 1, "invalid": 0, "other_level": 0 });
+    let culled = serde_json::json!({ "behind": 1, "eye_plane": 1, "back": 1, "outside": 1, "invalid": 0, "other_level": 0, "hidden": 0 });
     assert_eq!(counts["culled"], culled);
 }
 
@@ -100,7 +100,7 @@ fn points_are_counted_by_every_rasterizer() {
         let report: Value = serde_json::from_str(run.text()).unwrap();
         let counts = &report["counts"];
         // A point does not reach the eye plane; this disc is edge-on.
-        let culled = serde_json::json!({ "behind": 1, "eye_plane": 0, "back": 2, "outside": 1, "invalid": 0, "other_level": 0 });
+        let culled = serde_json::json!({ "behind": 1, "eye_plane": 0, "back": 2, "outside": 1, "invalid": 0, "other_level": 0, "hidden": 0 });
         assert_eq!((&counts["culled"], &counts["drawn"]), (&culled, &1.into()), "{way}");
         let rasterizer = way.split(' ').nth(2).map_or(Value::Null, Value::from);
         assert_eq!(report["rasterizer"], rasterizer, "{way}");

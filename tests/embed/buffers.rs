@@ -149,18 +149,21 @@ fn chunks_of_interleaved_buffers_fit_and_follow_the_count() {
         let border = external.chunks()[0].end;
         for name in ["perspective-ewa", "sprites-unfiltered", "pull-push"] {
             let settings = settings(Method::named(name).unwrap());
+            // The clusters of uploads have bounds: in frames that cull hidden ones, tiles visit splats in another order.
+            let is_culled = rasterizer == Rasterizer::Compute && name == "perspective-ewa";
+            let rounding = if is_culled { 1e-6 } else { 0.0 };
             for count in [20_000, border + 1, border, border - 1, 1, 0] {
                 [&external, &own].into_iter().for_each(|scene| scene.set_count(count).unwrap());
                 assert_eq!((external.count(), external.capacity()), (count, 20_000));
                 let [found, again] = [&external, &own].map(|scene| rig.render(&host, scene, &settings));
-                assert_eq!(differing(&found, &again, 0.0), 0, "{name} {rasterizer:?} {count}");
+                assert_eq!(differing(&found, &again, rounding), 0, "{name} {rasterizer:?} {count}");
                 if count == 0 {
                     assert_eq!(covered(&found), 0, "{name} {rasterizer:?}");
                     continue;
                 }
                 let fresh =
                     rig.render_uploaded(&host, &first(&surfels, count as usize), &external, &settings);
-                assert_eq!(differing(&found, &fresh, 0.0), 0, "{name} {rasterizer:?} {count}");
+                assert_eq!(differing(&found, &fresh, rounding), 0, "{name} {rasterizer:?} {count}");
                 assert!(count == 1 || covered(&fresh) > 0);
             }
         }

@@ -91,7 +91,11 @@ fn frames_of_a_path_are_those_of_new_renderers() {
             println!("{name}: {counts:?}, {} in clusters", report.culled_in_clusters);
             let all = counts.drawn + counts.behind + counts.eye_plane + counts.back + counts.outside;
             let surfels = 2 * levels.surfels.len() + 30_000;
-            assert_eq!((all + counts.invalid + counts.other_level) as usize, surfels, "{name}");
+            assert_eq!(
+                (all + counts.invalid + counts.other_level + counts.hidden) as usize,
+                surfels,
+                "{name}"
+            );
             assert!(picture == fresh(&device, &list, &camera, &settings), "{name}");
             culled.push(report.culled_in_clusters as usize);
         }

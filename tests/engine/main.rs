@@ -27,6 +27,7 @@ mod frame_plans;
 mod frames;
 mod groups;
 mod hard;
+mod hidden;
 mod hostile;
 mod instances;
 mod levels;

@@ -16,20 +16,31 @@
 //! `surface` draws all of the picture then, and again the tiles that the rest of the others may change. `occlusion`,
 //! `ambient` and `edl` darken the picture, and `filter` filters it, if the settings say so.
 //!
+//! Frames of more surfels than pixels cull hidden clusters in two phases: `cull` leaves out those that the last frame found hidden. After the
+//! first `surface`, `hidden` reveals those of them that nothing hides now; they are drawn with the tiles that they may change:
+//!
+//! ```text
+//! surface → farthest depths of tiles ─ hidden → revealed clusters ─ footprint → splats ─ boxes → hierarchy ─ surface → their tiles
+//! ```
+//!
 //! If ε is measured along the camera's axis, visibility has its own footprints, of discs moved by ε.
 
 use super::Path;
 use crate::frame::pass::Pass;
-use crate::frame::passes::footprint::{FOOTPRINT, MOVED};
-use crate::frame::passes::open::OPEN;
-use crate::frame::passes::sides::SIDES;
+use crate::frame::passes::footprint::{self, FOOTPRINT, MOVED};
+use crate::frame::passes::hidden::HIDDEN;
+use crate::frame::passes::open::{self, OPEN};
+use crate::frame::passes::sides::{self, SIDES};
 use crate::frame::passes::{attribute, boxes, boxes::BOXES, normalize, seed::SEED, surface, visibility};
+use crate::frame::variant::Variant;
+use crate::settings::splatting::Visibility;
 
-/// The passes; `moved` if ε is measured along the camera's axis, `split` if the passes of `surface` run separately, `sides` if some splats that
-/// face away are culled.
-pub fn passes(path: Path, moved: bool, split: bool, sides: bool) -> Vec<&'static Pass> {
+/// The passes.
+pub fn passes(path: Path, variant: &Variant) -> Vec<&'static Pass> {
+    let Variant { split, cull_auto: sides, occlusion_culling, .. } = *variant;
+    let moved = variant.visibility == Visibility::Axis;
     if path == Path::Compute && !split {
-        return whole(sides);
+        return whole(sides, occlusion_culling);
     }
     let (first, second): (&[&Pass], &[&Pass]) =
         if moved { (&[&MOVED], &[&FOOTPRINT]) } else { (&[&FOOTPRINT], &[]) };
@@ -57,9 +68,19 @@ pub fn passes(path: Path, moved: bool, split: bool, sides: bool) -> Vec<&'static
 }
 
 /// The passes whose stages run tile by tile.
-fn whole(sides: bool) -> Vec<&'static Pass> {
-    match sides {
-        false => vec![&FOOTPRINT, &BOXES, &surface::SURFACE],
-        true => vec![&FOOTPRINT, &boxes::FRONTS, &surface::FRONTS, &SIDES, &OPEN, &BOXES, &surface::OPEN],
+fn whole(sides: bool, occlusion_culling: bool) -> Vec<&'static Pass> {
+    if !sides {
+        return vec![&FOOTPRINT, &BOXES, &surface::SURFACE];
     }
+    let fronts: &[&Pass] = &[&FOOTPRINT, &boxes::FRONTS, &surface::FRONTS];
+    let revealed: &[&Pass] = &[
+        &HIDDEN,
+        &footprint::REVEALED,
+        &open::REVEALED,
+        &boxes::REVEALED,
+        &surface::REVEALED,
+        &sides::REVEALED,
+    ];
+    let revealed = if occlusion_culling { revealed } else { &[] };
+    [fronts, revealed, &[&SIDES, &OPEN, &BOXES, &surface::OPEN]].concat()
 }

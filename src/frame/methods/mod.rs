@@ -35,9 +35,7 @@ pub fn passes(variant: &Variant, path: Path, scenes: usize) -> Vec<&'static Pass
     let mut list = match (variant.pull_push, variant.visibility) {
         (Some(settings), _) => pull_push::passes(variant, settings.storage, scenes),
         (None, Visibility::Nearest) => nearest::passes(path, variant.cull_auto),
-        (None, visibility) => {
-            blended::passes(path, visibility == Visibility::Axis, variant.split, variant.cull_auto)
-        }
+        (None, Visibility::Ray | Visibility::Axis) => blended::passes(path, variant),
     };
     if variant.mixed {
         list.extend(behind(path, variant));

@@ -27,6 +27,19 @@ pub static FOOTPRINT: Pass = Pass {
     commands: Commands::Dispatches,
 };
 
+/// Those of revealed clusters.
+pub static REVEALED: Pass = Pass {
+    name: "footprint",
+    reads: &[Order, VisibleClusters],
+    writes: &[Splats, Boxes, Attributes, ScreenClips, Counts],
+    clears: &[],
+    programs: Programs::OfScene(|variant| {
+        let program = Program::compute(&FOOTPRINT_TILES_COMPUTE, Domain::RevealedClusters);
+        if variant.bounded { vec![program] } else { Vec::new() }
+    }),
+    commands: Commands::Dispatches,
+};
+
 /// Footprints of discs moved by ε along the camera's axis, for visibility; a constant disables counting.
 pub static MOVED: Pass = Pass {
     name: "footprint",

@@ -13,6 +13,7 @@ pub mod edl;
 pub mod fetch;
 pub mod filter;
 pub mod footprint;
+pub mod hidden;
 pub mod nearest;
 pub mod normalize;
 pub mod occlusion;
@@ -89,7 +90,7 @@ mod tests {
         all
     }
 
-    const RESOURCES: [Resource; 28] = [
+    const RESOURCES: [Resource; 30] = [
         Resource::VisibleClusters,
         Resource::Order,
         Resource::Splats,
@@ -105,6 +106,8 @@ mod tests {
         Resource::Coverage,
         Resource::Nearest,
         Resource::EdgeTiles,
+        Resource::RevealedTiles,
+        Resource::HiddenClusters,
         Resource::Behind,
         Resource::NearestDepth,
         Resource::NearestId,
@@ -152,6 +155,7 @@ mod tests {
                     let frame = Variant::new(&[streams], true, &settings, &options, rasterizer);
                     list.push(SceneVariant::new(frame, streams, rich));
                     list.push(SceneVariant::new(frame.with_slices(true), streams, rich));
+                    list.push(SceneVariant::new(frame.with_occlusion_culling(1, 0), streams, rich));
                 }
             }
         }

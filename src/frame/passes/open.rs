@@ -1,8 +1,8 @@
 //! Open: marked tiles → list of them, for a dispatch over these (`open.glsl`).
 
 use crate::frame::pass::{Commands, Domain, Pass, Program, Programs};
-use crate::frame::resource::Resource::{EdgeTiles, OpenTiles};
-use crate::vk::shaders::{OPEN_COMPUTE, OPEN_EDGES_COMPUTE};
+use crate::frame::resource::Resource::{EdgeTiles, OpenTiles, RevealedTiles};
+use crate::vk::shaders::{OPEN_COMPUTE, OPEN_EDGES_COMPUTE, OPEN_REVEALED_COMPUTE};
 
 /// One invocation per tile: those that `sides` has opened, for the second dispatch of `surface`.
 pub static OPEN: Pass = Pass {
@@ -21,5 +21,15 @@ pub static EDGES: Pass = Pass {
     writes: &[EdgeTiles],
     clears: &[],
     programs: Programs::OfFrame(|_| vec![Program::compute(&OPEN_EDGES_COMPUTE, Domain::TileSlots)]),
+    commands: Commands::Dispatches,
+};
+
+/// The same for those of revealed clusters, which are drawn again before `sides`.
+pub static REVEALED: Pass = Pass {
+    name: "open",
+    reads: &[],
+    writes: &[RevealedTiles],
+    clears: &[],
+    programs: Programs::OfFrame(|_| vec![Program::compute(&OPEN_REVEALED_COMPUTE, Domain::TileSlots)]),
     commands: Commands::Dispatches,
 };

@@ -4,14 +4,14 @@ use super::tiles;
 use crate::frame::pass::{Commands, Domain, Pass, Program, Programs};
 use crate::frame::resource::Resource::{
     self, Attributes, Boxes, Coverage, Depth, EdgeTiles, Image, IncompleteFrame, Normal, OpenTiles,
-    ScreenClips, Splats, Visibility,
+    RevealedTiles, ScreenClips, Splats, Visibility,
 };
 use crate::frame::variant::Variant;
 use crate::vk::shaders::{SURFACE_COMPUTE, SURFACE_SUBGROUPS_COMPUTE, constant};
 
 const READS: &[Resource] = &[Splats, Boxes, Attributes, ScreenClips];
 const WRITES: &[Resource] =
-    &[Visibility, OpenTiles, EdgeTiles, Coverage, Image, Normal, Depth, IncompleteFrame];
+    &[Visibility, OpenTiles, EdgeTiles, RevealedTiles, Coverage, Image, Normal, Depth, IncompleteFrame];
 
 /// One workgroup per tile.
 pub static SURFACE: Pass = Pass {
@@ -32,6 +32,19 @@ pub static FRONTS: Pass = Pass {
     programs: Programs::OfFrame(|variant| {
         let programs = programs(variant).into_iter();
         programs.map(|program| Program { domain: Domain::FrontTiles, ..program }).collect()
+    }),
+    commands: Commands::Dispatches,
+};
+
+/// The same again in the tiles of revealed clusters.
+pub static REVEALED: Pass = Pass {
+    name: "surface",
+    reads: READS,
+    writes: WRITES,
+    clears: &[],
+    programs: Programs::OfFrame(|variant| {
+        let programs = programs(variant).into_iter();
+        programs.map(|program| Program { domain: Domain::RevealedTiles, ..program }).collect()
     }),
     commands: Commands::Dispatches,
 };

@@ -90,6 +90,7 @@ impl<'a> InstanceRun<'a> {
                 instance_count: present,
                 first_node: scene.range.as_ref().map_or(0, |range| range.first_node(batch, index)) as u32,
                 group_count: scene.groups_of(batch, index).len() as u32,
+                revealed: 0,
             };
             let visible = scene.clusters.as_ref();
             let visible = visible.map(|clusters| clusters.workgroups(batch, index));
@@ -120,6 +121,7 @@ impl<'a> InstanceRun<'a> {
             instance_count: 0,
             first_node: 0,
             group_count: 0,
+            revealed: 0,
         };
         let instances = self.count as u32;
         Some(ChunkRun { set, counts: None, chunk, instances, capacity: instances, visible: None })

@@ -234,7 +234,7 @@ fn show_detail(ui: &mut Ui, detail: &FrameDetail, settings: &Settings, frame: f6
 
 /// Shows the counts of drawn and culled surfels.
 fn show_counts(ui: &mut Ui, counts: &SplatCounts) {
-    let SplatCounts { drawn, behind, eye_plane, back, outside, invalid, other_level } = *counts;
+    let SplatCounts { drawn, behind, eye_plane, back, outside, invalid, other_level, hidden } = *counts;
     Grid::new("counts").num_columns(2).show(ui, |ui| {
         for (name, count, text) in [
             ("drawn", drawn, "Surfels that the picture shows."),
@@ -244,6 +244,11 @@ fn show_counts(ui: &mut Ui, counts: &SplatCounts) {
             ("outside", outside, "Culled: outside the picture, or without an area on it."),
             ("invalid", invalid, "Culled: a value is not finite or not valid."),
             ("other level", other_level, "Not drawn: another level of detail is drawn there."),
+            (
+                "hidden",
+                hidden,
+                "Culled: in a group of neighbours all behind what is seen, as in the frame before.",
+            ),
         ] {
             ui.label(name).on_hover_text(text);
             ui.monospace(format!("{count:>10}"));
@@ -259,6 +264,7 @@ fn pass_text(label: &str) -> &'static str {
         "cull" => "Culls clusters of surfels by their bounds.",
         "footprint" => "Projects surfels to splats, culls and counts them.",
         "filter" => "Filters the pixels of the lit picture.",
+        "hidden" => "Finds groups of surfels that others hide.",
         "sides" => "Drops splats of the far side of closed surfaces.",
         "visibility" => "Renders the depth of the nearest surface from the splats.",
         "boxes" => "Bounds the splats of each node of the hierarchy.",

@@ -1,0 +1,5 @@
+// Tiles that revealed clusters may change: those that face the eye are drawn again before pass sides.
+
+#include "lib/tile_list.glsl"
+
+TILE_LIST(RevealedTiles, revealed, 28)
