@@ -1,5 +1,5 @@
-// Hidden: tests clusters against the depths of the tiles that show those which were not hidden in the last frame. It lists those of the others
-// that nothing hides in this frame, with the tiles that they may change, and notes for the next frame which ones are hidden.
+// Hidden: tests clusters against the farthest depths of tiles, once the clusters that were not hidden in the last frame are drawn. Of the others
+// it lists those that nothing hides in this frame, and the tiles that they may change. For the next frame it stores which clusters are hidden.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 
@@ -66,15 +66,19 @@ uint tile_of(Tiles tiles, uint k) {
     return tile_index(tiles.first + uvec2(k % columns, k / columns));
 }
 
-// Whether splats with at most this κ may change a tile. Those with pixels at edges, which show what is behind the nearest surface, have a key of 0.
+// Whether splats with at most this κ may change a tile. Tiles with pixels at edges, which show the surface behind, have a key of 0.
 bool may_change(float key, uint tile) {
     return !(key < uintBitsToFloat(open.tiles[tile].key));
 }
 
+// Whether the cluster may be hidden: it has a bound, and few tiles.
+bool is_testable(float key, Tiles tiles) {
+    return key < NEVER_HIDDEN && count_of(tiles) <= MOST_TILES;
+}
+
 bool is_hidden(float key, Tiles tiles) {
-    uint count = count_of(tiles);
-    if (!(key < NEVER_HIDDEN) || count > MOST_TILES) return false;
-    for (uint k = 0; k < count; k++) {
+    if (!is_testable(key, tiles)) return false;
+    for (uint k = 0; k < count_of(tiles); k++) {
         if (may_change(key, tile_of(tiles, k))) return false;
     }
     return true;
@@ -82,12 +86,11 @@ bool is_hidden(float key, Tiles tiles) {
 
 // Marks the tiles that splats with at most this κ may change. Invocations that mark the same tile store the same.
 void reveal(float key, Tiles tiles) {
-    uint count = count_of(tiles);
-    if (!(key < NEVER_HIDDEN) || count > MOST_TILES) {
+    if (!is_testable(key, tiles)) {
         revealed.all = 1;
         return;
     }
-    for (uint k = 0; k < count; k++) {
+    for (uint k = 0; k < count_of(tiles); k++) {
         uint tile = tile_of(tiles, k);
         if (may_change(key, tile)) revealed.tiles[tile].key = MARKED;
     }

@@ -23,6 +23,7 @@ layout(set = 0, binding = 22, std430) readonly buffer Clusters { Cluster cluster
 
 // Bound of the relative rounding errors of a sum of three products.
 const float ROUNDING = 1e-6;
+
 // Bounds of the values of gradient·p + constant for points p in a box.
 vec2 bounds_on(vec3 gradient, float constant, vec3 low, vec3 high) {
     vec3 a = gradient * low, b = gradient * high;

@@ -1,5 +1,5 @@
-// κ of fragments. The low-pass widens a disc over which its plane extends in front of it: by little where the plane is that of the surface, far where
-// the disc is seen edge-on.
+// κ of fragments. The low-pass widens a disc over which its plane extends in front of it: by little where the plane is that of the surface,
+// far where the disc is seen edge-on.
 
 #ifndef LIB_SHOWN_KEY
 #define LIB_SHOWN_KEY

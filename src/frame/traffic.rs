@@ -94,7 +94,7 @@ fn declared(pass: &Pass, variant: &SceneVariant, scene: &Streams) -> PassTraffic
     }
     let over =
         |domains: &[Domain]| programs.iter().any(|program: &Program| domains.contains(&program.domain));
-    if over(&[Domain::OpenTiles, Domain::EdgeTiles, Domain::RevealedTiles]) {
+    if over(&[Domain::OpenTiles, Domain::EdgeTiles, Domain::RevealedTiles, Domain::RevealedClusters]) {
         // The dispatch before has left the rest of what it would move.
         return PassTraffic { name: pass.name, ..PassTraffic::default() };
     }

@@ -14,53 +14,31 @@ const WRITES: &[Resource] =
     &[Visibility, OpenTiles, EdgeTiles, RevealedTiles, Coverage, Image, Normal, Depth, IncompleteFrame];
 
 /// One workgroup per tile.
-pub static SURFACE: Pass = Pass {
-    name: "surface",
-    reads: READS,
-    writes: WRITES,
-    clears: &[EdgeTiles],
-    programs: Programs::OfFrame(programs),
-    commands: Commands::Dispatches,
-};
+pub static SURFACE: Pass = over(&[EdgeTiles], programs);
 
 /// The same for the splats that face the eye, before sides.
-pub static FRONTS: Pass = Pass {
-    name: "surface",
-    reads: READS,
-    writes: WRITES,
-    clears: &[OpenTiles, EdgeTiles],
-    programs: Programs::OfFrame(|variant| {
-        let programs = programs(variant).into_iter();
-        programs.map(|program| Program { domain: Domain::FrontTiles, ..program }).collect()
-    }),
-    commands: Commands::Dispatches,
-};
+pub static FRONTS: Pass = over(&[OpenTiles, EdgeTiles], |variant| programs_over(variant, Domain::FrontTiles));
 
 /// The same again in the tiles of revealed clusters.
-pub static REVEALED: Pass = Pass {
-    name: "surface",
-    reads: READS,
-    writes: WRITES,
-    clears: &[],
-    programs: Programs::OfFrame(|variant| {
-        let programs = programs(variant).into_iter();
-        programs.map(|program| Program { domain: Domain::RevealedTiles, ..program }).collect()
-    }),
-    commands: Commands::Dispatches,
-};
+pub static REVEALED: Pass = over(&[], |variant| programs_over(variant, Domain::RevealedTiles));
 
 /// The same for the tiles that sides has opened.
-pub static OPEN: Pass = Pass {
-    name: "surface",
-    reads: READS,
-    writes: WRITES,
-    clears: &[],
-    programs: Programs::OfFrame(|variant| {
-        let programs = programs(variant).into_iter();
-        programs.map(|program| Program { domain: Domain::OpenTiles, ..program }).collect()
-    }),
-    commands: Commands::Dispatches,
-};
+pub static OPEN: Pass = over(&[], |variant| programs_over(variant, Domain::OpenTiles));
+
+const fn over(clears: &'static [Resource], programs: fn(&Variant) -> Vec<Program>) -> Pass {
+    Pass {
+        name: "surface",
+        reads: READS,
+        writes: WRITES,
+        clears,
+        programs: Programs::OfFrame(programs),
+        commands: Commands::Dispatches,
+    }
+}
+
+fn programs_over(variant: &Variant, domain: Domain) -> Vec<Program> {
+    programs(variant).into_iter().map(|program| Program { domain, ..program }).collect()
+}
 
 fn programs(variant: &Variant) -> Vec<Program> {
     let programs = tiles(variant, [&SURFACE_COMPUTE, &SURFACE_SUBGROUPS_COMPUTE]);
