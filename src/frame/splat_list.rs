@@ -3,7 +3,8 @@
 use super::resource::Resource;
 use super::scene_resources::copy_to_host;
 use super::splat_buffers::{ALIGNMENT, Batches, SPLAT};
-use super::variant::{TileWorkgroup, Variant};
+use super::tile_workgroup::TileWorkgroup;
+use super::variant::Variant;
 use crate::error::Result;
 use crate::scene::{CLUSTER, Scene};
 use crate::vk::shaders::layout::{Hierarchy, Level, ScreenClip};
