@@ -38,6 +38,8 @@ const uint MOST_OPENED = 4096;
 
 // Opens the tiles that a splat may change. Invocations that open the same tile store the same.
 void open_tiles_of(Box box) {
+    // Splats at a border whose fragments all lie outside the picture are drawn, and change no tile.
+    if (is_empty(box)) return;
     uvec2 last_tile = tile_counts() - 1;
     uvec4 bounds = corners(box) / TILE;
     uvec2 low = min(bounds.xy, last_tile), high = min(bounds.zw, last_tile), size = high - low + 1;

@@ -39,6 +39,10 @@ bool is_back(Box box) {
     return (box.y & BACK_BOX) != 0;
 }
 
+bool is_empty(Box box) {
+    return box.x == EMPTY_BOX.x;
+}
+
 // The corners: low x and y, high x and y.
 uvec4 corners(Box box) {
     return uvec4(box.x & 0xffffu, box.x >> 16, box.y & 0xffffu, (box.y & ~BACK_BOX) >> 16);
