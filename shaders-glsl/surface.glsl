@@ -54,7 +54,7 @@ void store_edges(uvec2 origin) {
 // Stores the κ behind which splats do not change the tile: 0 if it has empty pixels, or uncovered samples, which hidden splats cover, too.
 void store_key(uvec2 origin) {
     bool is_covered = !COVERAGE || incomplete_pixels == uvec2(0);
-    if (lane == 0) open.tiles[tile_index(origin / TILE)].key = is_covered ? floatBitsToUint(visibility_cull_key) : 0;
+    if (lane == 0 && is_in_viewport(origin)) open.tiles[tile_index(origin / TILE)].key = is_covered ? floatBitsToUint(visibility_cull_key) : 0;
 }
 
 // First pixel of the workgroup's tile.
