@@ -98,7 +98,7 @@ void mix_pixels(uvec2 origin) {
 #include "lib/edge_tiles.glsl"
 
 // The passes of surface run separately: the samples of the nearest surface are not known yet, nor the tiles with edges.
-layout(constant_id = 73) const bool SPLIT = false;
+layout(constant_id = 81) const bool SPLIT = false;
 
 void main() {
     load_frame();

@@ -8,8 +8,8 @@
 #include "lib/frame.glsl"
 #include "lib/background.glsl"
 
-// An invocation filters a block of pixels row by row, from the sums of the last rows; COLUMNS and BLOCK_ROWS as in src/frame/recording.rs.
-// Neighbouring columns share what they load.
+// An invocation filters a block of pixels row by row, from the sums of the last rows; BLOCK_GROUP in src/frame/recording.rs is the size of a
+// workgroup's blocks. Neighbouring columns share what they load.
 layout(local_size_x = 16, local_size_y = 4) in;
 const int COLUMNS = 4, BLOCK_ROWS = 16;
 

@@ -135,7 +135,7 @@ pub static BEHIND_COMPUTE: Module = Module {
     name: "behind_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("behind_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 67, 70, 72, 73, 76, 79],
+    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 67, 70, 72, 76, 79, 81],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, false), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::EDGE_TILES, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -145,7 +145,7 @@ pub static BEHIND_SUBGROUPS_COMPUTE: Module = Module {
     name: "behind_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("behind_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 67, 70, 72, 73, 76, 79],
+    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 67, 70, 72, 76, 79, 81],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, false), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::CLIP_TEXELS, false), (&resource::EDGE_TILES, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -1135,7 +1135,7 @@ pub mod constant {
     /// `SLICED`, first in `shaders-glsl/attribute.glsl`.
     pub const SLICED: u32 = 47;
     /// `SPLIT`, first in `shaders-glsl/behind.glsl`.
-    pub const SPLIT: u32 = 73;
+    pub const SPLIT: u32 = 81;
     /// `STAGE`, first in `shaders-glsl/behind.glsl`.
     pub const STAGE: u32 = 74;
     /// `STORED_COLOURS`, first in `shaders-glsl/attribute.glsl`.

@@ -200,7 +200,7 @@ struct Ellipse {
     float key_centre; // on_plane: κ of the plane at the centre
     float least_key;  // CURVATURES: κ of the plane down to which there are fragments
     float key_disc;   // κ of the disc's nearest point
-    uint clip;        // see screen_clip_number
+    uint clip;        // see screen_clip_index
 };
 
 // Value of a plane at d px from the anchor, with compensated rounding: an edge-on plane crosses all depths within a pixel, and large terms

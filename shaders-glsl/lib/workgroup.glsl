@@ -40,7 +40,7 @@ DEFINE_SHUFFLE(vec3, vec3_shuffle)
 DEFINE_SHUFFLE(vec4, vec4_shuffle)
 DEFINE_SHUFFLE(uint, uint_shuffle)
 
-// Bit k is the condition of lane k, which is false from lane 32 on.
+// Bit k is set if the condition holds in lane k, or in lane k + 32.
 uint workgroup_ballot(bool condition) {
     uint bits = uint(condition) << (lane & 31u);
     for (uint k = 0; k < STEPS; k++) bits |= shuffle(bits, lane ^ 1u << k);

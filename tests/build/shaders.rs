@@ -241,6 +241,13 @@ fn specialization_constants_have_one_id() {
         &message,
         &["shaders-glsl/there.glsl: error: constant HAS_COLOUR has id 4, but 3 in shaders-glsl/here.glsl"],
     );
+    let message = error(&[("here.glsl", &here), ("there.glsl", &here.replace("HAS_COLOUR", "HAS_NORMALS"))]);
+    contains(
+        &message,
+        &[
+            "shaders-glsl/there.glsl: error: constant HAS_NORMALS has id 3, as HAS_COLOUR in shaders-glsl/here.glsl",
+        ],
+    );
 }
 
 #[test]

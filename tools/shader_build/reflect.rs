@@ -115,9 +115,13 @@ impl Interface {
 
     fn add_constant(&mut self, name: String, id: u32, file: &str) -> Result<(), String> {
         let (known, first) = self.constants.entry(name.clone()).or_insert((id, file.to_owned()));
-        match *known == id {
-            true => Ok(()),
-            false => Err(format!("{file}: error: constant {name} has id {id}, but {known} in {first}")),
+        if *known != id {
+            return Err(format!("{file}: error: constant {name} has id {id}, but {known} in {first}"));
+        }
+        let others = self.constants.iter().filter(|(other, (taken, _))| *other != &name && *taken == id);
+        match others.map(|(other, (_, place))| format!("{other} in {place}")).next() {
+            None => Ok(()),
+            Some(other) => Err(format!("{file}: error: constant {name} has id {id}, as {other}")),
         }
     }
 
