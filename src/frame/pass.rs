@@ -44,7 +44,7 @@ pub enum Commands {
 
 /// Context in which the steps of a pass are recorded.
 pub struct StepContext<'a> {
-    /// Its only pipeline.
+    /// The pipeline of its first program.
     pub pipeline: Option<&'a crate::vk::ComputePipeline>,
     /// Descriptor set 1.
     pub targets: &'a crate::vk::DescriptorSet,

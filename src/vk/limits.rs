@@ -92,7 +92,7 @@ pub struct Capabilities {
     pub max_colour_attachments: u32,
     /// The host has enabled dynamic rendering (the feature dynamicRendering).
     pub dynamic_rendering: bool,
-    /// Maximum number of workgroups of a dispatch.
+    /// Maximum number of workgroups of a dispatch along x.
     pub max_workgroups: u32,
     /// Largest device-local heap, bytes.
     pub memory: u64,
