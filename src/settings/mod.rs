@@ -3,16 +3,17 @@
 mod check;
 mod choice;
 mod hierarchy;
+mod lighting;
 pub mod methods;
 mod outputs;
 pub mod pull_push;
 pub mod splatting;
 
-use crate::error::{Error, Result};
 use crate::settings::pull_push::{PullPush, Rules};
 use crate::settings::splatting::{Filter, Footprint, Splatting, Visibility};
 pub use choice::Choice;
 pub use hierarchy::Hierarchy;
+pub use lighting::{DirectionalLight, Lighting};
 pub use outputs::{Outputs, Precision, Rasterizer, RasterizerChoice, RasterizerReason};
 use std::ops::RangeInclusive;
 
@@ -356,66 +357,5 @@ impl Shading {
     /// Whether it shows colours, which are filtered and blended with a background, and not another quantity.
     pub fn is_coloured(self) -> bool {
         matches!(self, Self::Lit | Self::Colour | Self::Edl)
-    }
-}
-
-/// Lights and material, all linear.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Lighting {
-    /// Colour of surfaces without colours.
-    pub albedo: [f32; 3],
-    /// Ambient light, as a factor of the albedo.
-    pub ambient: f32,
-    /// Lambertian factor of the headlight, which is at the eye.
-    pub headlight: f32,
-    /// Blinn–Phong's specular factor, the same for all lights.
-    pub specular: f32,
-    /// Blinn–Phong's exponent.
-    pub shininess: f32,
-    /// Further lights, at most [`Lighting::MAX_DIRECTIONAL`].
-    pub directional: Vec<DirectionalLight>,
-}
-
-/// A light at infinity.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DirectionalLight {
-    /// Unit vector from the surface to the light, world space.
-    pub to_light: [f32; 3],
-    /// Linear RGB radiance.
-    pub radiance: [f32; 3],
-}
-
-impl Lighting {
-    /// Maximum number of directional lights beside the headlight.
-    pub const MAX_DIRECTIONAL: usize = 4;
-
-    /// Validates the lights and the material.
-    fn check(&self) -> Result<()> {
-        let lights = self.directional.len();
-        if lights > Self::MAX_DIRECTIONAL {
-            let most = Self::MAX_DIRECTIONAL;
-            return Err(Error::Usage(format!("{lights} directional lights: give at most {most}")));
-        }
-        let factors = [self.ambient, self.headlight, self.specular, self.shininess];
-        let directions = self.directional.iter().flat_map(|light| [light.to_light, light.radiance]).flatten();
-        match self.albedo.into_iter().chain(factors).chain(directions).find(|number| !number.is_finite()) {
-            Some(number) => Err(Error::Usage(format!(
-                "a number of the lights or the material is {number}: give finite ones"
-            ))),
-            None => Ok(()),
-        }
-    }
-}
-
-impl Default for Lighting {
-    fn default() -> Self {
-        Self {
-            albedo: [0.6; 3],
-            ambient: 0.08,
-            headlight: 0.87,
-            specular: 0.06,
-            shininess: 40.0,
-            directional: Vec::new(),
-        }
     }
 }
