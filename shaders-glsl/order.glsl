@@ -1,7 +1,7 @@
 // Order: sorts the surfels of a chunk along a Morton curve through the scene's bounds, by DIGIT_BITS bits of the code at a time, the lowest
 // first. The entries are divided into runs, one per invocation. A run counts its digits; the prefix sums over digits and runs (SCAN) are
 // the positions to which a run moves its entries (SCATTER). The sort is stable and has no atomics: every frame has the same order. Runs are
-// few and long, for the threads of a CPU device: on GPUs, which take the raster path by default, it is not fast.
+// few and long, for the threads of a CPU device: on GPUs the sort is not fast.
 #version 450
 #pragma variant SCAN
 #pragma variant SCATTER

@@ -31,8 +31,9 @@ ivec4 box_of(Triangle t) {
     vec2 low = vec2(0.0), high = frame.viewport - 1.0;
     if (min(min(t.a.distance, t.b.distance), t.c.distance) >= view.near) {
         vec2 a = t.screen[0], b = t.screen[1], c = t.screen[2];
-        low = max(t.anchor + floor(min(min(a, b), c)), low);
-        high = min(t.anchor + floor(max(max(a, b), c)), high);
+        // Bounded on both sides: integers far outside the picture would be undefined.
+        low = clamp(t.anchor + floor(min(min(a, b), c)), low, frame.viewport);
+        high = clamp(t.anchor + floor(max(max(a, b), c)), vec2(-1.0), high);
     }
     return ivec4(low, high);
 }
