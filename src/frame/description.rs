@@ -63,18 +63,20 @@ pub fn describe(
     let splats_per_tile = total_splats_per_tile(scenes, camera, options.size, lod);
     // With a bound on the work of a tile there are no slices.
     let sliced = options.most_splats.is_none() && slicing.needs_slices(scenes, splats_per_tile);
-    let fit = Fit::new(device, options, workgroup.is_some(), sliced);
+    let streams: Vec<_> = scenes.iter().map(|placed| placed.scene.streams()).collect();
+    let variant = |options: &RenderOptions, rasterizer| {
+        Variant::new(&streams, perspective, settings, options, rasterizer).with_slices(sliced)
+    };
+    let fit = Fit::new(device, options.size, workgroup.is_some(), &variant(options, Rasterizer::Compute));
     let (rasterizer, reason) = rasterizer_of(device, options, settings, scenes, fit)?;
     let precision = match settings.pull_push {
         Some(_) => options.precision,
         None => width_of_sums(device, options, rasterizer),
     };
     let options = RenderOptions { precision, ..*options };
-    let streams: Vec<_> = scenes.iter().map(|placed| placed.scene.streams()).collect();
-    let variant = Variant::new(&streams, perspective, settings, &options, rasterizer);
     let distant = uniforms.is_distant();
     let variant =
-        Variant { distant, workgroup: workgroup.unwrap_or_default(), ..variant }.with_slices(sliced);
+        Variant { distant, workgroup: workgroup.unwrap_or_default(), ..variant(&options, rasterizer) };
     let surfels = scenes.iter().map(|placed| placed.scene.count()).sum();
     let variant = variant.with_occlusion_culling(surfels, options.size.map(u64::from).iter().product());
     check_lookups(&variant, scenes)?;

@@ -2,7 +2,8 @@
 
 use super::pyramids::Pyramids;
 use super::renderer::RenderOptions;
-use super::targets::{coverage_fits, stage_targets_fit};
+use super::targets::{coverage_fits, targets_fit};
+use super::variant::Variant;
 use crate::error::{Error, Result};
 use crate::scene::instance::Placed;
 use crate::settings::{Alpha, Settings};
@@ -27,7 +28,7 @@ pub(crate) fn width_of_blended_sums(device: &Device, options: &RenderOptions) ->
 pub(crate) struct Fit {
     /// Splats of all scenes.
     pub splats: bool,
-    /// Targets between passes, if the frame has any.
+    /// Targets between passes, if the frame has any: 4 or 16 bytes a pixel.
     pub targets: bool,
 }
 
@@ -35,10 +36,9 @@ impl Fit {
     /// Everything fits.
     pub const ALL: Self = Self { splats: true, targets: true };
 
-    /// Whether targets between passes fit, which split and `sliced` frames have.
-    pub fn new(device: &Device, options: &RenderOptions, splats: bool, sliced: bool) -> Self {
-        let has_targets = options.split || sliced;
-        Self { splats, targets: !has_targets || stage_targets_fit(device.capabilities(), options.size) }
+    /// Whether the targets of `variant` fit at this size, if it is drawn on the compute path.
+    pub fn new(device: &Device, size: [u32; 2], splats: bool, variant: &Variant) -> Self {
+        Self { splats, targets: targets_fit(device.capabilities(), size, variant) }
     }
 }
 
@@ -142,7 +142,7 @@ fn no_compute_path(device: &Device, fit: Fit) -> Error {
     let cause = match (fit.targets, fit.splats) {
         (false, _) => {
             format!(
-                "weighted sums within the {most} bytes of a buffer that shaders of {name} see, as its stages are passes of their own"
+                "what its passes leave for each pixel within the {most} bytes of a buffer that shaders of {name} see"
             )
         }
         (_, false) => format!(

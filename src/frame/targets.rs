@@ -3,15 +3,14 @@
 use super::pass::{DrawTargets, InitialContents, Pass};
 use super::pyramids::Pyramids;
 use super::resource::Resource;
-use super::target_descriptions::{COVERAGE, Kind, TargetDescription, coverage, describe, sums_format};
+use super::target_descriptions::{COVERAGE, Kind, TargetDescription, coverage, describe};
 use super::tile_list;
 use super::variant::Variant;
 use crate::error::{Error, Result};
-use crate::settings::{Outputs, Precision};
+use crate::settings::Outputs;
 use crate::vk::shaders;
 use crate::vk::{
     Access, Attachment, Binding, Buffer, Capabilities, DescriptorSet, Device, Encoder, Image, Use,
-    pixel_bytes,
 };
 use ash::vk::Format;
 use std::sync::Arc;
@@ -55,9 +54,14 @@ pub fn coverage_fits(capabilities: &Capabilities, size: [u32; 2]) -> bool {
     COVERAGE * pixels_of(size) <= capabilities.max_storage_buffer_range
 }
 
-/// Whether the targets between compute passes, which split and sliced frames have, fit a storage buffer range.
-pub fn stage_targets_fit(capabilities: &Capabilities, size: [u32; 2]) -> bool {
-    pixel_bytes(sums_format(Precision::Full, true)) * pixels_of(size) <= capabilities.max_storage_buffer_range
+/// Whether the buffers of pixels of a frame of this variant and size fit a storage buffer range.
+pub fn targets_fit(capabilities: &Capabilities, size: [u32; 2], variant: &Variant) -> bool {
+    let bytes_of = |target: TargetDescription| match target.kind {
+        Kind::Pixels(bytes) => bytes,
+        Kind::Image(_) | Kind::Halved(_) | Kind::Tiles => 0,
+    };
+    let most = describe(variant).into_iter().map(bytes_of).max().unwrap_or(0);
+    most * pixels_of(size) <= capabilities.max_storage_buffer_range
 }
 
 /// Number of pixels.

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use surfel::geometry::{Camera, Extent, Surfels, Weights};
 use surfel::settings::methods::Method;
 use surfel::settings::methods::object_ewa::{self, Progressive};
-use surfel::settings::splatting::{Normalization, Splatting};
+use surfel::settings::splatting::{Normalization, Splatting, Visibility};
 use surfel::settings::{Alpha, Cull, DirectionalLight, Edges, Shading, Widen};
 use surfel::verify::reference::{Expected, Tolerance};
 use surfel::verify::scenes::bumpy_sphere;
@@ -227,6 +227,33 @@ fn without_fragment_writes_coverage_takes_the_compute_path() {
     let neither = self::device(DeviceLimits { max_storage_buffer_range: Some(1 << 19), ..limits }).unwrap();
     assert!(lacks(run(&neither, None, &settings)));
     assert_silent(&neither);
+}
+
+#[test]
+fn pictures_whose_buffers_do_not_fit_take_the_raster_path() {
+    let limits = DeviceLimits { max_storage_buffer_range: Some(1 << 20), ..Default::default() };
+    let Some(device) = device(limits) else { return };
+    let scene = Scene::upload(&device, &sphere(500)).unwrap();
+    // Pixels of a visibility buffer, and of weighted sums, that fill the range; frames of these axes have passes of their own for these.
+    let axis = Splatting { visibility: Visibility::Axis, ..Splatting::default() };
+    for (splatting, pixels) in [(Splatting::default(), 1 << 18), (axis, 1 << 16)] {
+        for (more, rasterizer) in [(0, Rasterizer::Compute), (1, Rasterizer::Draw)] {
+            let size = [256, pixels / 256 + more];
+            let settings = Settings { splatting, cull: Cull::Auto, ..splats_alone() };
+            let options = RenderOptions { size, ..Default::default() };
+            let mut renderer = Renderer::new(&device, options).unwrap();
+            renderer.render(&scene, &camera(size), &settings).unwrap();
+            assert_eq!(renderer.rasterizer(), Some(rasterizer), "{size:?} px, {:?}", splatting.visibility);
+            let required = RenderOptions { rasterizer: Rasterizer::Compute.into(), ..options };
+            let mut renderer = Renderer::new(&device, required).unwrap();
+            let refused = renderer.render(&scene, &camera(size), &settings).err();
+            assert_eq!(refused.is_some(), more > 0, "{refused:?}");
+            assert!(
+                refused.is_none_or(|error| error.to_string().contains("for each pixel within the 1048576"))
+            );
+        }
+    }
+    assert_silent(&device);
 }
 
 #[test]
