@@ -54,9 +54,12 @@ impl SceneCache {
         self.current_count = 0;
         let mut old: Vec<_> = std::mem::take(&mut self.list).into_iter().map(Some).collect();
         let mut reuse = |(index, scene): (usize, &&Scene)| {
-            let same = |entry: &Entry| entry.scene == scene.id && fits(&entry.resources, index);
-            let found = old.iter_mut().find(|entry| entry.as_ref().is_some_and(same))?;
-            found.take().map(|entry| entry.resources)
+            let same = |entry: &Option<Entry>| {
+                entry.as_ref().is_some_and(|entry| entry.scene == scene.id && fits(&entry.resources, index))
+            };
+            // Most frames have the scenes of the last one, in the same order.
+            let place = if old.get(index).is_some_and(same) { index } else { old.iter().position(same)? };
+            old[place].take().map(|entry| entry.resources)
         };
         let mut found: Vec<_> = scenes.iter().enumerate().map(&mut reuse).collect();
         let of_host = scenes.iter().any(|scene| scene.is_of_host());
