@@ -428,7 +428,7 @@ pub fn batches_of(device: &Device, scene: &Scene, instances: u64) -> Batches {
     let triangles = scene.primitives.as_ref().and_then(|kinds| kinds.triangles.as_ref());
     let listed = triangles.map_or(0, |triangles| u64::from(triangles.count));
     let bytes = (slots(scene.capacity()) * SPLAT).max(4 * listed);
-    let range = device.capabilities().max_storage_buffer_range - LIST_HEADER;
+    let range = device.capabilities().max_storage_buffer_range.saturating_sub(LIST_HEADER);
     Batches::new(instances, scene.chunks().len(), bytes, range)
 }
 

@@ -33,7 +33,7 @@ pub struct DeviceLimits {
     pub max_texels: Option<u64>,
     /// Upper bound of `maxStorageBufferRange`, bytes.
     pub max_storage_buffer_range: Option<u64>,
-    /// Lower bound of `minStorageBufferOffsetAlignment`, bytes, a power of two.
+    /// Lower bound of `minStorageBufferOffsetAlignment`, bytes, a power of two up to 256.
     pub storage_buffer_alignment: Option<u64>,
     /// Upper bound of `maxPerStageDescriptorStorageBuffers`.
     pub max_storage_buffers: Option<u32>,
@@ -162,7 +162,7 @@ impl Capabilities {
                 .min(mask.max_storage_buffer_range.unwrap_or(u64::MAX)),
             storage_buffer_alignment: limits
                 .min_storage_buffer_offset_alignment
-                .max(mask.storage_buffer_alignment.unwrap_or(1)),
+                .max(mask.storage_buffer_alignment.unwrap_or(1).min(256).next_power_of_two()),
             max_storage_buffers: limits
                 .max_per_stage_descriptor_storage_buffers
                 .min(mask.max_storage_buffers.unwrap_or(u32::MAX)),
