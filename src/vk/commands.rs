@@ -62,8 +62,10 @@ impl Commands {
                 let _alone = self.device.lock_if_validated();
                 raw.queue_submit(*queue, &submit, self.fence).map_err(Error::vulkan("vkQueueSubmit"))?;
             }
-            self.device.wait(self.fence)?;
-            raw.reset_fences(&[self.fence]).map_err(Error::vulkan("vkResetFences"))
+            // The commands may still run after a failed wait; a lost device has nothing left to wait for.
+            let waited = self.device.wait(self.fence).inspect_err(|_| drop(self.device.wait_idle()));
+            raw.reset_fences(&[self.fence]).map_err(Error::vulkan("vkResetFences"))?;
+            waited
         }
     }
 

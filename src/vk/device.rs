@@ -151,10 +151,14 @@ impl Device {
             .map_err(|result| Error::NoDevice(format!("{}: vkCreateDevice: {result}", description.name)))?;
         // SAFETY: the queue was asked for above.
         let queue = Mutex::new(unsafe { raw.get_device_queue(family, 0) });
-        let memory = memory::Source::own(&instance.raw, &raw, physical, options.memory_blocks)
-            .map_err(|error| Error::NoDevice(format!("{}: {error}", description.name)))?;
-        let pipeline_cache =
-            PipelineCache::load(&instance.raw, physical, &raw, options.pipeline_cache.as_deref())?;
+        let made = memory::Source::own(&instance.raw, &raw, physical, options.memory_blocks)
+            .map_err(|error| Error::NoDevice(format!("{}: {error}", description.name)))
+            .and_then(|memory| {
+                let file = options.pipeline_cache.as_deref();
+                PipelineCache::load(&instance.raw, physical, &raw, file).map(|cache| (memory, cache))
+            });
+        // SAFETY: nothing is left of what was created on the device.
+        let (memory, pipeline_cache) = made.inspect_err(|_| unsafe { raw.destroy_device(None) })?;
         let labels = instance.debug_utils.then(|| Labels::new(&instance.raw, &raw, options.validate));
         log::info!("device: {} ({}, {})", description.name, description.kind, description.driver);
         Ok(Arc::new(Self {

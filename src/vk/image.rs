@@ -138,13 +138,7 @@ impl Image {
     }
 
     pub(super) fn range(&self) -> vk::ImageSubresourceRange {
-        vk::ImageSubresourceRange {
-            aspect_mask: self.aspect(),
-            base_mip_level: 0,
-            level_count: 1,
-            base_array_layer: 0,
-            layer_count: 1,
-        }
+        whole(self.aspect())
     }
 
     /// A view of the whole image, for attachments.
@@ -184,6 +178,17 @@ impl Drop for Image {
         if let Some(allocation) = self.allocation.take() {
             memory::free(&self.device, allocation);
         }
+    }
+}
+
+/// The range of all of an image with one level and one layer.
+pub(super) fn whole(aspect_mask: vk::ImageAspectFlags) -> vk::ImageSubresourceRange {
+    vk::ImageSubresourceRange {
+        aspect_mask,
+        base_mip_level: 0,
+        level_count: 1,
+        base_array_layer: 0,
+        layer_count: 1,
     }
 }
 

@@ -1,8 +1,8 @@
 //! Presentation to a window: a swapchain that follows the window's size, and two frames in flight.
 
 use super::{
-    Access, Commands, Device, Image, ImageUse, Recorder, Surface, capture::Capture, overlay::Overlay,
-    slot::Slot, swapchain::Swapchain,
+    Access, Commands, Device, Image, ImageUse, Recorder, Surface, capture::Capture, image::whole,
+    overlay::Overlay, slot::Slot, swapchain::Swapchain,
 };
 use crate::error::{Error, Result};
 use ash::{khr, vk};
@@ -31,6 +31,8 @@ pub struct Presenter {
     behind: bool,
     /// Consecutive failures to create a swapchain.
     refused: u32,
+    /// The error of the first frame that was not submitted.
+    failure: Option<String>,
     swapchains: khr::swapchain::Device,
     format: vk::SurfaceFormatKHR,
     modes: Vec<vk::PresentModeKHR>,
@@ -118,12 +120,7 @@ impl Presented {
 
     /// Clears the image to black.
     pub fn clear(&self) {
-        let range = vk::ImageSubresourceRange {
-            aspect_mask: vk::ImageAspectFlags::COLOR,
-            level_count: 1,
-            layer_count: 1,
-            ..Default::default()
-        };
+        let range = whole(vk::ImageAspectFlags::COLOR);
         let black = vk::ClearColorValue { float32: [0.0, 0.0, 0.0, 1.0] };
         let layout = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
         let before = vk::MemoryBarrier::default()
@@ -210,6 +207,7 @@ impl Presenter {
             frames: 0,
             behind: false,
             refused: 0,
+            failure: None,
             swapchains,
             format,
             modes,
@@ -272,6 +270,7 @@ impl Presenter {
         size: [u32; 2],
         record: impl FnOnce(&mut Presented) -> Result<R>,
     ) -> Result<Option<R>> {
+        self.check()?;
         self.behind = true;
         let Some(index) = self.acquire(size)? else { return Ok(None) };
         let Some(target) = self.swapchain.as_ref().map(|swapchain| swapchain.target(index)) else {
@@ -280,12 +279,13 @@ impl Presenter {
         let image = target.image;
         let frame = self.frame(target);
         let Some(swapchain) = &mut self.swapchain else { return Ok(None) };
-        let slot = &self.slots[self.next];
+        let slot = &mut self.slots[self.next];
         use vk::ImageLayout as Layout;
         let recorded = slot.record(frame, record, |slot| {
             slot.transition(image, [Layout::TRANSFER_DST_OPTIMAL, Layout::PRESENT_SRC_KHR]);
         });
-        slot.submit(Some(swapchain.drawn(index)))?;
+        let submitted = recorded.and_then(|made| slot.submit(Some(swapchain.drawn(index))).map(|()| made));
+        let recorded = submitted.inspect_err(|error| self.failure = Some(error.to_string()))?;
         self.next = (self.next + 1) % self.slots.len();
         self.behind = !swapchain.present(&self.device, index)?;
         recorded.map(Some)
@@ -332,14 +332,24 @@ impl Presenter {
         size: [u32; 2],
         record: impl FnOnce(&mut Presented) -> Result<()>,
     ) -> Result<Vec<[u8; 4]>> {
+        self.check()?;
         self.wait()?;
         let capture = Capture::new(&self.device, &self.overlay, self.format.format, size)?;
         let frame = self.frame(capture.target());
-        let slot = &self.slots[self.next];
+        let slot = &mut self.slots[self.next];
         let recorded = slot.record(frame, record, |slot| capture.end(slot));
-        slot.submit(None)?;
-        slot.wait()?;
+        let submitted = recorded.and_then(|made| slot.submit(None).map(|()| made));
+        let recorded = submitted.inspect_err(|error| self.failure = Some(error.to_string()))?;
+        self.slots[self.next].wait()?;
         recorded.map(|()| capture.pixels())
+    }
+
+    /// Whether frames can still be submitted: after a failed submission, the semaphore of the acquired image stays signalled.
+    fn check(&self) -> Result<()> {
+        let Some(failure) = &self.failure else { return Ok(()) };
+        Err(Error::Usage(format!(
+            "an earlier frame was not submitted: {failure}: open the device and its window again"
+        )))
     }
 
     /// Waits until the GPU has finished every frame.

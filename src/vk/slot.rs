@@ -2,6 +2,7 @@
 
 use super::Device;
 use super::command_pool::CommandPool;
+use super::image::whole;
 use super::lock;
 use super::presenter::Presented;
 use crate::error::{Error, Result};
@@ -14,6 +15,7 @@ pub(super) struct Slot {
     pub(super) cmd: vk::CommandBuffer,
     /// Signalled when the swapchain image is available.
     pub(super) acquired: vk::Semaphore,
+    /// Null after a failed submission: there is nothing to wait for.
     done: vk::Fence,
     device: Arc<Device>,
 }
@@ -37,17 +39,24 @@ impl Slot {
 
     /// Waits until the GPU has finished the last frame of this slot.
     pub(super) fn wait(&self) -> Result<()> {
+        if self.done == vk::Fence::null() {
+            return Ok(());
+        }
         // SAFETY: the fence is the device's.
         unsafe { self.device.wait(self.done) }
     }
 
-    /// Records a frame. After an error of `body`, only the first image transition and `end` remain. The caller has waited for the slot.
+    /// Records a frame, and returns the result of `body`. After an error of `body`, only the first image transition and `end` remain. The
+    /// caller has waited for the slot.
+    ///
+    /// # Errors
+    /// Those of Vulkan, after which the command buffer must not be submitted.
     pub(super) fn record<R>(
         &self,
         mut frame: Presented,
         body: impl FnOnce(&mut Presented) -> Result<R>,
         end: impl FnOnce(&Self),
-    ) -> Result<R> {
+    ) -> Result<Result<R>> {
         self.begin(frame.image)?;
         let recorded = body(&mut frame).and_then(|made| frame.check().map(|()| made));
         if recorded.is_err() {
@@ -58,7 +67,7 @@ impl Slot {
         // SAFETY: it is being recorded.
         unsafe { self.device.raw.end_command_buffer(self.cmd) }
             .map_err(Error::vulkan("vkEndCommandBuffer"))?;
-        recorded
+        Ok(recorded)
     }
 
     fn begin(&self, image: vk::Image) -> Result<()> {
@@ -74,12 +83,7 @@ impl Slot {
             vk::ImageLayout::TRANSFER_SRC_OPTIMAL => vk::AccessFlags::TRANSFER_READ,
             _ => vk::AccessFlags::TRANSFER_WRITE,
         };
-        let range = vk::ImageSubresourceRange {
-            aspect_mask: vk::ImageAspectFlags::COLOR,
-            level_count: 1,
-            layer_count: 1,
-            ..Default::default()
-        };
+        let range = whole(vk::ImageAspectFlags::COLOR);
         let barrier = vk::ImageMemoryBarrier::default()
             .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
             .dst_access_mask(next)
@@ -98,8 +102,9 @@ impl Slot {
         }
     }
 
-    /// Submits the command buffer. For a swapchain image, it waits until the image is available and then signals `drawn`.
-    pub(super) fn submit(&self, drawn: Option<vk::Semaphore>) -> Result<()> {
+    /// Submits the command buffer. For a swapchain image, it waits until the image is available and then signals `drawn`. The slot cannot
+    /// be submitted again after an error.
+    pub(super) fn submit(&mut self, drawn: Option<vk::Semaphore>) -> Result<()> {
         let (queue, _) = self.device.queue()?;
         let (commands, stages) = ([self.cmd], [vk::PipelineStageFlags::TRANSFER]);
         let (waits, signals) = (drawn.map(|_| self.acquired), drawn);
@@ -112,8 +117,14 @@ impl Slot {
         let _alone = self.device.lock_if_validated();
         // SAFETY: the buffer was recorded whole; the fence was waited for, and the queue is locked.
         unsafe {
-            self.device.raw.reset_fences(&[self.done]).map_err(Error::vulkan("vkResetFences"))?;
-            self.device.raw.queue_submit(*queue, &submit, self.done).map_err(Error::vulkan("vkQueueSubmit"))
+            let raw = &self.device.raw;
+            raw.reset_fences(&[self.done]).map_err(Error::vulkan("vkResetFences"))?;
+            let submitted = raw.queue_submit(*queue, &submit, self.done);
+            if submitted.is_err() {
+                // Nothing would ever signal it.
+                raw.destroy_fence(std::mem::take(&mut self.done), None);
+            }
+            submitted.map_err(Error::vulkan("vkQueueSubmit"))
         }
     }
 }

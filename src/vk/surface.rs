@@ -56,12 +56,12 @@ impl Surface {
     pub(super) fn check(&self, physical: vk::PhysicalDevice, family: u32, name: &str) -> Result<()> {
         // SAFETY: the device is of the surface's instance, and the family one of its own.
         let served = unsafe { self.loader.get_physical_device_surface_support(physical, family, self.raw) };
-        match served {
-            Ok(true) => Ok(()),
-            _ => Err(Error::NoDevice(format!(
-                "{name} does not present to this window: choose another device, which `surfel devices` lists"
-            ))),
+        if served.map_err(Error::vulkan("vkGetPhysicalDeviceSurfaceSupportKHR"))? {
+            return Ok(());
         }
+        Err(Error::NoDevice(format!(
+            "{name} does not present to this window: choose another device, which `surfel devices` lists"
+        )))
     }
 }
 

@@ -1,5 +1,6 @@
 //! Swapchain: the images of a window, of one size.
 
+use super::image::whole;
 use super::lock;
 use super::presenter::Target;
 use super::{Device, Surface, overlay::Overlay};
@@ -8,6 +9,10 @@ use ash::{khr, vk};
 use std::sync::Arc;
 
 const CREATE: &str = "vkCreateSwapchainKHR";
+/// Frames are copied or scaled to the images, and what is drawn over them is an attachment's.
+const USAGE: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(
+    vk::ImageUsageFlags::TRANSFER_DST.as_raw() | vk::ImageUsageFlags::COLOR_ATTACHMENT.as_raw(),
+);
 
 /// The swapchain of a window.
 pub(super) struct Swapchain {
@@ -48,6 +53,12 @@ impl Swapchain {
         if extent.width == 0 || extent.height == 0 || size.contains(&0) {
             return Ok(None);
         }
+        if !can.supported_usage_flags.contains(USAGE) {
+            return Err(Error::NoDevice(format!(
+                "{} cannot copy to the images of this window, or draw over them: choose another device",
+                device.description().name
+            )));
+        }
         let count = can.min_image_count + 1;
         let count = if can.max_image_count == 0 { count } else { count.min(can.max_image_count) };
         let info = vk::SwapchainCreateInfoKHR::default()
@@ -57,9 +68,9 @@ impl Swapchain {
             .image_color_space(format.color_space)
             .image_extent(extent)
             .image_array_layers(1)
-            .image_usage(vk::ImageUsageFlags::TRANSFER_DST | vk::ImageUsageFlags::COLOR_ATTACHMENT)
+            .image_usage(USAGE)
             .pre_transform(can.current_transform)
-            .composite_alpha(vk::CompositeAlphaFlagsKHR::OPAQUE)
+            .composite_alpha(composite_alpha(&can))
             .present_mode(mode)
             .clipped(true)
             .old_swapchain(old.as_ref().map_or(vk::SwapchainKHR::null(), |old| old.raw));
@@ -93,12 +104,7 @@ impl Swapchain {
         let (view, framebuffer) = (vk::ImageView::null(), vk::Framebuffer::null());
         self.images.push(SwapchainImage { image, view, framebuffer, drawn: vk::Semaphore::null() });
         let Some(shown) = self.images.last_mut() else { return Ok(()) };
-        let range = vk::ImageSubresourceRange {
-            aspect_mask: vk::ImageAspectFlags::COLOR,
-            level_count: 1,
-            layer_count: 1,
-            ..Default::default()
-        };
+        let range = whole(vk::ImageAspectFlags::COLOR);
         let info = vk::ImageViewCreateInfo::default()
             .image(image)
             .view_type(vk::ImageViewType::TYPE_2D)
@@ -177,6 +183,14 @@ fn extent(can: &vk::SurfaceCapabilitiesKHR, size: [u32; 2]) -> vk::Extent2D {
         },
         _ => own,
     }
+}
+
+/// How α of the images is composed with other windows: not at all, if the surface can leave it out.
+fn composite_alpha(can: &vk::SurfaceCapabilitiesKHR) -> vk::CompositeAlphaFlagsKHR {
+    use vk::CompositeAlphaFlagsKHR as Alpha;
+    let kinds = [Alpha::OPAQUE, Alpha::INHERIT, Alpha::PRE_MULTIPLIED, Alpha::POST_MULTIPLIED];
+    let supported = |kind: &Alpha| can.supported_composite_alpha.contains(*kind);
+    kinds.into_iter().find(supported).unwrap_or(Alpha::OPAQUE)
 }
 
 impl Drop for Swapchain {

@@ -1,6 +1,7 @@
 //! Tracking of resource accesses, from which the barriers between passes follow.
 
 use super::access::{Access, Resource, SHADER_STAGES, Use};
+use super::image::whole;
 use super::lock;
 use ash::vk;
 use std::collections::HashMap;
@@ -177,13 +178,7 @@ fn image_barrier(
     change: &Change,
     access: Access,
 ) -> vk::ImageMemoryBarrier<'static> {
-    let range = vk::ImageSubresourceRange {
-        aspect_mask: aspect,
-        base_mip_level: 0,
-        level_count: 1,
-        base_array_layer: 0,
-        layer_count: 1,
-    };
+    let range = whole(aspect);
     vk::ImageMemoryBarrier::default()
         .image(image)
         .subresource_range(range)
