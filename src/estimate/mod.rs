@@ -5,7 +5,6 @@ mod cell;
 mod creases;
 mod curvature;
 mod draft;
-mod eigen;
 mod face;
 mod face_colours;
 mod face_edges;

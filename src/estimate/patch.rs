@@ -1,11 +1,11 @@
 //! Local surface around a point: its plane, and the required radius of its disc.
 
 use super::cell::Cell;
-use super::eigen;
 use super::scan::Around;
 use super::scans::Scans;
 use super::sites::Sites;
 use crate::geometry::Ellipse;
+use crate::geometry::eigen;
 use glam::{DMat2, DMat3, DVec2, DVec3, Vec3};
 
 /// Local surface around a site.

@@ -1,8 +1,11 @@
 //! Extent: what a camera frames.
 
+mod facing;
+
 use super::camera::look_at_view;
 use super::{Bounds, Cloud, Parts, Pose, Span};
 use crate::error::Result;
+use facing::Facing;
 use glam::{DMat3, DQuat, DVec3, Vec3};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -12,8 +15,7 @@ use std::f64::consts::{PI, TAU};
 pub struct Extent {
     /// The outermost discs, as spheres, world space.
     spheres: Vec<Sphere>,
-    /// Mean of the unit normals by area, world space: 0 for a closed surface, of length 1 for a plane.
-    facing: DVec3,
+    facing: Facing,
 }
 
 /// Centre and radius.
@@ -45,7 +47,8 @@ impl Extent {
         let discs = (0..surfels.len()).filter(|&i| surfels.is_valid(i)).map(|i| Disc {
             centre: surfels.positions[i],
             radius: surfels.radii[i],
-            normal: if two_sided(i) { Vec3::ZERO } else { surfels.normals[i] },
+            normal: surfels.normals[i],
+            two_sided: two_sided(i),
         });
         let vertices = parts.primitives.into_iter().flat_map(|primitives| {
             let valid = (0..primitives.len()).filter(|&i| primitives.is_valid(i));
@@ -53,6 +56,7 @@ impl Extent {
                 centre: primitives.positions[i],
                 radius: primitives.radii[i],
                 normal: Vec3::ZERO,
+                two_sided: false,
             })
         });
         Self::of_discs(&discs.chain(vertices).collect::<Vec<_>>(), parts.origin())
@@ -63,10 +67,11 @@ impl Extent {
         let finite = |p: &Vec3| p.is_finite();
         let normal = |i: usize| cloud.normals.as_ref().map_or(Vec3::ZERO, |normals| normals[i]);
         let points = cloud.positions.iter().enumerate().filter(|(_, p)| finite(p));
-        let discs = points.map(|(i, &centre)| Disc { centre, radius: 0.0, normal: normal(i) });
+        let discs =
+            points.map(|(i, &centre)| Disc { centre, radius: 0.0, normal: normal(i), two_sided: false });
         let mut extent = Self::of_discs(&discs.collect::<Vec<_>>(), cloud.origin)?;
         if !cloud.triangles.is_empty() {
-            extent.facing = mean_normal(cloud);
+            extent.facing = Facing::of_triangles(cloud);
         }
         Some(extent)
     }
@@ -77,7 +82,7 @@ impl Extent {
         let outermost = outermost(&kept);
         let spheres = outermost.into_iter().map(|i| &kept[i]);
         let spheres = spheres.map(|disc| (disc.centre.as_dvec3() + origin, disc.radius.into())).collect();
-        Some(Self { spheres, facing: facing(&kept) })
+        Some(Self { spheres, facing: Facing::of(&kept) })
     }
 
     /// The extent with its turns about an axis, a unit vector, through a point.
@@ -96,15 +101,16 @@ impl Extent {
     }
 
     /// Direction to view from, a unit vector: from the front, a little from the right and from above; an open surface from
-    /// its front, a plane from at most 30° beside its normal. `axes` are the directions to the right, up and to the front.
+    /// its front, a plane from at most 30° beside its normal, and one of two-sided discs from either side. `axes` are the directions to the right, up and to the front.
     pub fn view_direction(&self, [right, up, front]: [DVec3; 3]) -> DVec3 {
         let [yaw, pitch] = FRONT;
         let level = yaw.sin() * right + yaw.cos() * front;
         let usual = pitch.cos() * level + pitch.sin() * up;
-        let Some(facing) = self.facing.try_normalize().filter(|_| self.facing.length() > OPEN) else {
+        let mean = self.facing.seen_from(usual);
+        let Some(facing) = mean.try_normalize().filter(|_| mean.length() > OPEN) else {
             return usual;
         };
-        let most = OBLIQUE[1] + self.facing.length() * (OBLIQUE[0] - OBLIQUE[1]);
+        let most = OBLIQUE[1] + mean.length() * (OBLIQUE[0] - OBLIQUE[1]);
         if usual.dot(facing) >= most.cos() {
             return usual;
         }
@@ -175,12 +181,13 @@ pub fn horizontal_axes(up: DVec3) -> [DVec3; 2] {
     [right, right.cross(up)]
 }
 
-/// A disc, relative to the model's origin; its normal is zero if it has no front.
+/// A disc, relative to the model's origin; its normal is zero if it has none.
 #[derive(Clone, Copy)]
 struct Disc {
     centre: Vec3,
     radius: f32,
     normal: Vec3,
+    two_sided: bool,
 }
 
 /// The box of all points that are not stray.
@@ -293,35 +300,17 @@ impl Columns {
     }
 }
 
-/// Mean of the normals by area; zero without any.
-fn facing(discs: &[Disc]) -> DVec3 {
-    let areas = discs.iter().filter(|disc| disc.normal != Vec3::ZERO);
-    mean(areas.map(|disc| f64::from(disc.radius).powi(2).max(f64::MIN_POSITIVE) * disc.normal.as_dvec3()))
-}
-
-/// Mean normal of the triangles by area.
-fn mean_normal(cloud: &Cloud) -> DVec3 {
-    let corner = |i: u32| cloud.positions[i as usize].as_dvec3();
-    mean(cloud.triangles.iter().map(|&[a, b, c]| (corner(b) - corner(a)).cross(corner(c) - corner(a))))
-}
-
-/// The sum of vectors divided by that of their lengths; zero if that is 0.
-fn mean(vectors: impl Iterator<Item = DVec3>) -> DVec3 {
-    let (sum, length) = vectors.fold((DVec3::ZERO, 0.0), |(sum, length), v| (sum + v, length + v.length()));
-    if length > 0.0 && length.is_finite() { sum / length } else { DVec3::ZERO }
-}
-
 impl Default for Extent {
     /// The unit sphere.
     fn default() -> Self {
-        Self { spheres: vec![(DVec3::ZERO, 1.0)], facing: DVec3::ZERO }
+        Self { spheres: vec![(DVec3::ZERO, 1.0)], facing: Facing::default() }
     }
 }
 
 impl From<&Bounds> for Extent {
     /// The bounding sphere.
     fn from(bounds: &Bounds) -> Self {
-        Self { spheres: vec![(bounds.centre(), bounds.radius)], facing: DVec3::ZERO }
+        Self { spheres: vec![(bounds.centre(), bounds.radius)], facing: Facing::default() }
     }
 }
 

@@ -7,6 +7,7 @@ mod cloud;
 mod colour_map;
 mod curvature;
 mod discs;
+pub(crate) mod eigen;
 mod extent;
 mod face_textures;
 mod join;

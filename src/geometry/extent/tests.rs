@@ -146,12 +146,21 @@ fn half_a_sphere_is_seen_from_its_outside() {
 }
 
 #[test]
-fn surfels_without_a_side_have_no_front() {
-    let surfels = Surfels { two_sided: Some(vec![true; 1600]), ..square(Vec3::NEG_Z) };
+fn two_sided_surfels_are_seen_from_either_side() {
     let axes = [DVec3::X, DVec3::Y, DVec3::Z];
-    let [ours, usual] =
-        [Extent::of(&surfels).unwrap(), Extent::default()].map(|extent| extent.view_direction(axes));
-    assert_eq!(ours, usual);
+    let usual = Extent::default().view_direction(axes);
+    let towards = |surfels: Surfels| {
+        let two_sided = Some(vec![true; surfels.len()]);
+        Extent::of(&Surfels { two_sided, ..surfels }).unwrap().view_direction(axes)
+    };
+    for normal in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::Z, Vec3::NEG_Z, Vec3::new(-0.6, 0.0, 0.8)] {
+        let mut surfels = square(normal);
+        surfels.normals.iter_mut().step_by(3).for_each(|normal| *normal = -*normal);
+        let cosine = towards(surfels).dot(normal.as_dvec3());
+        let nearer = cosine * usual.dot(normal.as_dvec3()).signum();
+        assert!(nearer > OBLIQUE[0].cos() - 1e-6, "{normal}: {cosine}");
+    }
+    assert_eq!(towards(ellipsoid(5000, Vec3::ONE)), usual);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 /// Eigenvalues in ascending order and unit eigenvectors, by cyclic Jacobi rotations: exact to rounding also for equal eigenvalues.
-pub(super) fn symmetric(mut a: DMat3) -> (DVec3, [DVec3; 3]) {
+pub(crate) fn symmetric(mut a: DMat3) -> (DVec3, [DVec3; 3]) {
     const SWEEPS: usize = 8;
     let mut vectors = DMat3::IDENTITY;
     for _ in 0..SWEEPS {
