@@ -197,6 +197,7 @@ fn tally(loaded: &LoadedModel, counts: SplatCounts) -> Value {
 pub fn estimated(counts: &Estimated) -> Value {
     let Estimated {
         normals_given,
+        normals_contradictory,
         normals_from_faces,
         normals_from_neighbours,
         two_sided,
@@ -209,7 +210,7 @@ pub fn estimated(counts: &Estimated) -> Value {
     json!({
         "normals": {
             "given": normals_given, "from_faces": normals_from_faces, "from_neighbours": normals_from_neighbours,
-            "two_sided": two_sided, "scattered": scattered, "billboards": billboards,
+            "contradictory": normals_contradictory, "two_sided": two_sided, "scattered": scattered, "billboards": billboards,
         },
         "scanner_found": scanner_found,
         "radii": {

@@ -1,6 +1,6 @@
 //! Surfels with missing attributes.
 
-use super::{Estimate, Estimated, Scanner};
+use super::{Estimate, Estimated, NormalSource, Scanner, given_normals};
 use crate::error::{Error, Result};
 use crate::geometry::{Clips, Cloud, Ellipse, FaceTextures, Surfels, View, Viewpoints, Weights, morton};
 use glam::Vec3;
@@ -135,6 +135,18 @@ impl Draft {
         self.surfels.permute(order);
         let kept = || order.iter().map(|&from| from as usize);
         self.viewpoints = self.viewpoints.take().map(|viewpoints| viewpoints.gather(kept()));
+    }
+
+    /// Removes the given normals that are not wanted.
+    pub fn reject_normals(&mut self, wanted: NormalSource) {
+        match wanted {
+            NormalSource::File => {}
+            NormalSource::Estimate => drop(given_normals::remove(&mut self.surfels)),
+            NormalSource::Auto if given_normals::contradict(&self.surfels) => {
+                self.estimated.normals_contradictory = given_normals::remove(&mut self.surfels);
+            }
+            NormalSource::Auto => {}
+        }
     }
 
     /// Counts the present normals and radii as given.

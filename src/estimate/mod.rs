@@ -12,6 +12,7 @@ mod face_samples;
 mod faces;
 mod facets;
 mod forest;
+mod given_normals;
 mod lines;
 mod model;
 mod neighbours;
@@ -28,6 +29,7 @@ mod spacing;
 mod summary;
 mod winding;
 
+pub use given_normals::NormalSource;
 pub use spacing::spacing;
 
 use crate::Progress;
@@ -99,6 +101,8 @@ pub struct Estimate {
     /// Where the scanner was. Normals face it, and the points next to each other as it sees them give radii and normals where the lines of a
     /// scan are far apart.
     pub scanner: Scanner,
+    /// Which normals the surfels get.
+    pub normals: NormalSource,
     /// Where the surfels of meshes are.
     pub mesh_sampling: MeshSampling,
     /// Removes points whose mean distance from their neighbours is more than this number of standard deviations above the average.
@@ -122,6 +126,7 @@ impl Default for Estimate {
             outlines: true,
             billboards: true,
             scanner: Scanner::Auto,
+            normals: NormalSource::Auto,
             mesh_sampling: MeshSampling::Auto,
             outliers: None,
             sharp: None,
@@ -172,6 +177,8 @@ impl Estimate {
 pub struct Estimated {
     /// Normals from the file.
     pub normals_given: u64,
+    /// Normals of the file whose sides contradict each other ([`NormalSource::Auto`]), in whose place others are estimated.
+    pub normals_contradictory: u64,
     /// Normals from the faces around the point.
     pub normals_from_faces: u64,
     /// Normals from the nearest points.
@@ -217,6 +224,7 @@ impl Add for Estimated {
     fn add(self, other: Self) -> Self {
         Self {
             normals_given: self.normals_given + other.normals_given,
+            normals_contradictory: self.normals_contradictory + other.normals_contradictory,
             normals_from_faces: self.normals_from_faces + other.normals_from_faces,
             normals_from_neighbours: self.normals_from_neighbours + other.normals_from_neighbours,
             scattered: self.scattered + other.scattered,
@@ -242,6 +250,7 @@ impl Add for Estimated {
 impl Cloud {
     /// Converts the cloud to surfels, one per point, in Morton order. [`Cloud::into_model`] includes lines and triangles.
     ///
+    /// Given normals are removed if [`Estimate::normals`] says so.
     /// A missing normal is that of the faces around the point, outwards on a closed surface; without faces, that of the least-squares plane through its neighbours. Such
     /// a normal points to where the cloud was seen from, or agrees with known normals and with its neighbours', outwards on a closed
     /// surface. If its side is still unknown, the surfel is two-sided. A point whose neighbours are no surface, as in vegetation, becomes
@@ -260,6 +269,9 @@ impl Cloud {
         if let Some(deviations) = how.outliers {
             let kept = outliers::kept(&draft.surfels.positions, deviations, how, progress)?;
             draft.keep(&kept);
+        }
+        if !how.bare {
+            draft.reject_normals(how.normals);
         }
         draft.count_given();
         if how.bare {
@@ -322,6 +334,7 @@ mod tests {
     fn every_count_is_added() {
         let one = Estimated {
             normals_given: 1,
+            normals_contradictory: 20,
             normals_from_faces: 2,
             normals_from_neighbours: 3,
             scattered: 17,
@@ -343,6 +356,7 @@ mod tests {
         };
         let two = Estimated {
             normals_given: 2,
+            normals_contradictory: 40,
             normals_from_faces: 4,
             normals_from_neighbours: 6,
             scattered: 34,

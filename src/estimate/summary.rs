@@ -9,6 +9,7 @@ impl Estimated {
         let counts = self;
         let some = |count: u64| (count > 0).then(|| thousands(count));
         let normals = sources(counts.normals_from_faces, counts.normals_from_neighbours);
+        let contradictory = some(counts.normals_contradictory);
         let radii = sources(counts.radii_from_faces, counts.radii_from_neighbours);
         let two_sided = some(counts.two_sided).filter(|_| normals.is_some());
         let scattered = some(counts.scattered);
@@ -24,6 +25,9 @@ impl Estimated {
         let thin = some(counts.line_radii_from_extent);
         let parts = [
             normals.map(|text| format!("normals of {text}")),
+            contradictory.map(|count| {
+                format!("{count} normals of the file replaced, as their sides contradict each other")
+            }),
             radii.map(|text| format!("radii of {text}")),
             two_sided.map(|count| format!("{count} two-sided")),
             scattered.map(|count| format!("{count} normals unlike their neighbours'")),
@@ -81,6 +85,10 @@ mod tests {
         let line = "normals of 34,834 points from faces, 1,113 from neighbours; radii of 35,947 points from neighbours; 210 two-sided; \
                     12 on no surface, as discs that face the eye";
         assert_eq!(mixed.summary().as_deref(), Some(line));
+        let replaced =
+            Estimated { normals_from_neighbours: 9, normals_contradictory: 9, ..Default::default() };
+        let line = "normals of 9 points from neighbours; 9 normals of the file replaced, as their sides contradict each other";
+        assert_eq!(replaced.summary().as_deref(), Some(line));
         let lines = Estimated { line_radii_from_lines: 2, line_radii_from_extent: 4, ..given };
         let line = "radii of 2 vertices of lines from others of their line; radii of 4 vertices of lines from the lines' extent, \
                     as no line radius is given";

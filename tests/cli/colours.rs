@@ -91,7 +91,7 @@ fn the_report_has_the_scale_and_the_estimation() {
     assert_eq!(normal["color_by"], json!({ "name": "normal", "map": null, "range": null }));
     let plain = report("");
     assert_eq!(plain["color_by"], Value::Null);
-    let normals = json!({ "given": 2, "from_faces": 0, "from_neighbours": 0, "two_sided": 0, "scattered": 0, "billboards": 0 });
+    let normals = json!({ "given": 2, "from_faces": 0, "from_neighbours": 0, "contradictory": 0, "two_sided": 0, "scattered": 0, "billboards": 0 });
     let radii = json!({ "given": 2, "from_faces": 0, "from_neighbours": 0 });
     assert_eq!(plain["estimated"], json!({ "normals": normals, "radii": radii, "scanner_found": 0 }));
 }

@@ -7,7 +7,7 @@ use std::num::NonZeroU64;
 use std::path::PathBuf;
 use std::sync::Arc;
 use surfel::Result;
-use surfel::estimate::{Estimate, MeshSampling, Scanner};
+use surfel::estimate::{Estimate, MeshSampling, NormalSource, Scanner};
 use surfel::formats::{Filter, Returns, image};
 use surfel::geometry::{ColourMap, MipMap};
 use surfel::load::{Colouring, Uncoloured};
@@ -56,6 +56,14 @@ pub struct Points {
     /// auto: where the file says; otherwise 0,0,0 if the directions of the points from there are a grid, as of lidars. file: where the file says, or unknown.
     #[arg(long, value_name = "WHERE", value_parser = scanner, default_value = "auto", allow_hyphen_values = true)]
     pub scanner: Scanner,
+    /// Normals of points
+    #[arg(
+        long,
+        value_name = "WHICH",
+        value_parser = choice::<NormalSource>(),
+        default_value = NormalSource::Auto.name(),
+    )]
+    pub normals: NormalSource,
     /// Where the surfels of a mesh are
     #[arg(
         long,
@@ -92,6 +100,7 @@ impl Points {
             outlines: true,
             billboards: !self.no_billboards,
             scanner: self.scanner,
+            normals: self.normals,
             mesh_sampling: self.mesh_sampling,
             outliers: self.drop_outliers,
             sharp: None,
