@@ -1,23 +1,22 @@
 //! **surfel** renders point-sampled surfaces with Vulkan: scans, photogrammetry, simulations.
 //!
-//! The way of the data, and where each step lives:
-//!
 //! ```text
 //! file ─ formats, estimate → geometry ─ scene → buffers ─ frame: methods, passes → targets → picture
 //! ```
 //!
-//! Layer by layer, from the lowest; none imports what stands below it here.
+//! Modules form layers, and none imports one that is below it in this table:
 //!
-//! | module | | feature |
+//! | module | contents | feature |
 //! |---|---|---|
-//! | [`vk`] | the layer over raw Vulkan | `window` for presenting |
-//! | [`geometry`] | what a scene is made of: surfels, lines, triangles, bounds, cameras; plain CPU data | |
-//! | [`settings`] | what a frame is asked to be: how surfels become pixels, the papers' methods, outputs; plain CPU data | |
-//! | [`formats`] | PLY, PNG, EXR, cameras | `io` |
+//! | [`vk`] | Vulkan devices, their limits, and windows | `window` for presenting |
+//! | [`geometry`] | surfels, lines, triangles, bounds, cameras; plain CPU data | |
+//! | [`settings`] | how surfels become pixels: axes, the papers' methods, outputs; plain CPU data | |
+//! | [`formats`] | readers and writers of point clouds, pictures and cameras | `io` |
 //! | [`estimate`] | normals, radii, creases, sides and lines of points that come without | `estimate` |
-//! | [`scene`] | geometry on the GPU: only the streams that it has, where it is placed | |
-//! | [`verify`] | what pictures are held to: [`reference`](mod@verify::reference), the float64 twin of every pass; [`truth`](verify::truth), exact images; [`metrics`](verify::metrics) of error; [`scenes`](verify::scenes) with exact surfaces; [`baseline`](verify::baseline), a native program | each by its name, the last by `bench` |
-//! | [`mod@frame`] | frames: what one needs and no more, one file a pass beside the shader of the same name, recording, reading back | |
+//! | [`scene`] | geometry on the GPU: its streams, instances and updates | |
+//! | [`verify`] | [`reference`](mod@verify::reference): each shader in float64; [`truth`](verify::truth): exact pictures; [`metrics`](verify::metrics) of error; [`scenes`](verify::scenes) with exact surfaces; [`baseline`](verify::baseline): splatting on the CPU | each by its name, the last by `bench` |
+//! | [`mod@load`] | from files and built-in scenes to a model | `io`, `estimate` |
+//! | [`mod@frame`] | frames: methods, passes, targets, recording, reading back | |
 //! | [`capture`] | normalization weights of surfels, from pictures of them | `reference` |
 //! | [`embed`] | the same frames within those of another renderer | |
 //! | [`bench`](mod@bench) | speed against error | `bench` |
