@@ -1,7 +1,7 @@
 //! Colours points by a property or a geometric quantity, with one scale for all inputs.
 
 use super::Listener;
-use crate::formats::colour_bar::ColourBar;
+use crate::formats::colour_bar::{BarValues, ColourBar};
 use crate::geometry::{Cloud, ColourMap, ColourScale, Colours, Model, Quantity, ValueRange};
 use crate::{Error, Result, thousands};
 use glam::DVec3;
@@ -166,13 +166,25 @@ impl Colouring {
 impl Coloured {
     /// The colour bar; `None` without values.
     pub fn bar(&self) -> Option<ColourBar> {
-        Some(ColourBar { scale: self.scale?, name: label(&self.name) })
+        Some(colour_bar(&self.name, self.scale?))
     }
 
     /// The scale, or one that is grey everywhere.
     fn scale_or_grey(&self, map: ColourMap) -> ColourScale {
         self.scale.unwrap_or(ColourScale { map, range: ValueRange { min: 0.0, max: 0.0 } })
     }
+}
+
+/// The colour bar of a property or quantity of this name.
+pub fn colour_bar(name: &str, scale: ColourScale) -> ColourBar {
+    let values = match name {
+        "classification" => BarValues::Classes,
+        "return_number" | "number_of_returns" | "point_source_id" | "user_data" | "scan" => {
+            BarValues::Integers
+        }
+        _ => BarValues::Numbers,
+    };
+    ColourBar { scale, name: label(name), values }
 }
 
 /// Name of a property or quantity for a legend, with its unit where the file formats fix that.

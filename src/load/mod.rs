@@ -9,7 +9,7 @@ mod shading;
 mod suggestion;
 mod warnings;
 
-pub use colouring::{Coloured, Colouring, label};
+pub use colouring::{Coloured, Colouring, colour_bar, label};
 pub use preview::Preview;
 pub use shading::SuggestedShading;
 pub use suggestion::{Suggestion, Uncoloured};

@@ -15,7 +15,7 @@ use std::sync::Arc;
 use surfel::formats::Filter;
 use surfel::formats::colour_bar::ColourBar;
 use surfel::geometry::{Camera, Extent, MostDrawn, Pose};
-use surfel::load::label;
+use surfel::load::colour_bar;
 use surfel::settings::methods::Method;
 use surfel::settings::{Choice, Shading};
 use surfel::thousands;
@@ -280,7 +280,7 @@ impl ViewState {
     pub fn colour_bar(&self) -> Option<ColourBar> {
         let SceneView { source, .. } = self.view.as_ref()?;
         let scale = source.wanted.scale()?;
-        Some(ColourBar { name: label(source.name(source.wanted.attribute)), scale })
+        Some(colour_bar(source.name(source.wanted.attribute), scale))
     }
 
     /// What the panels let the user choose, if a scene is shown.

@@ -18,6 +18,20 @@ pub struct ColourBar {
     pub scale: ColourScale,
     /// Name of the quantity, above the bar.
     pub name: String,
+    /// Kind of the values.
+    pub values: BarValues,
+}
+
+/// Kind of the values of a colour bar.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BarValues {
+    /// Any numbers.
+    #[default]
+    Numbers,
+    /// Whole numbers, without labels between them.
+    Integers,
+    /// Classes of the ASPRS LAS specification, whose names are labels ([`class_name`](super::class_name)).
+    Classes,
 }
 
 /// Width and height of the smallest picture with a bar, px.
@@ -81,19 +95,32 @@ impl ColourBar {
     /// As [`ColourBar::check`].
     pub fn draw(&self, picture: &mut Encoded) -> Result<()> {
         Self::check(picture.size())?;
-        let font = Font::of_height(picture.size()[0].min(picture.size()[1]) / LINES);
-        let height = (f64::from(picture.size()[1]) * HEIGHT) as u32 - 2 * font.height();
-        let ticks = ticks(&self.scale.range, 1.1 * f64::from(font.height()) / f64::from(height));
-        let name = self.title(font, picture.size()[0] / 2);
-        let layout = Layout::of(picture.size(), font, height, &name, &ticks);
+        let (layout, name, ticks) = self.layout(picture.size());
         let Theme { panel, ink, opacity } = if picture.lightness(layout.panel) > 0.2 { LIGHT } else { DARK };
         picture.fill(layout.panel, panel, opacity);
         // Without an edge, a panel of the background's colour would look like the end of the object.
         layout.panel.edges().into_iter().for_each(|edge| picture.fill(edge, ink, EDGE));
-        picture.text(layout.title, &name, font, ink);
+        picture.text(layout.title, &name, layout.font, ink);
         self.draw_bar(picture, layout.bar, ink);
         ticks.iter().for_each(|tick| layout.draw_tick(picture, tick, ink));
         Ok(())
+    }
+
+    /// Width of the part of a picture of this size at its right edge that the bar covers, px; 0 if it is too small for a bar.
+    pub fn width(&self, size: [u32; 2]) -> u32 {
+        if Self::check(size).is_err() {
+            return 0;
+        }
+        size[0] - self.layout(size).0.panel.x
+    }
+
+    /// Positions of all parts, the name and the ticks, in a picture of this size.
+    fn layout(&self, size: [u32; 2]) -> (Layout, String, Vec<Tick>) {
+        let font = Font::of_height(size[0].min(size[1]) / LINES);
+        let height = (f64::from(size[1]) * HEIGHT) as u32 - 2 * font.height();
+        let ticks = ticks(&self.scale.range, 1.1 * f64::from(font.height()) / f64::from(height), self.values);
+        let name = self.title(font, size[0] / 2);
+        (Layout::of(size, font, height, &name, &ticks), name, ticks)
     }
 
     /// The name, truncated to `width` px.
@@ -150,7 +177,7 @@ mod tests {
 
     fn bar(name: &str, min: f64, max: f64) -> ColourBar {
         let scale = ColourScale { map: ColourMap::Viridis, range: ValueRange { min, max } };
-        ColourBar { scale, name: name.into() }
+        ColourBar { scale, name: name.into(), values: BarValues::Numbers }
     }
 
     fn drawn(bar: &ColourBar, [width, height]: [u32; 2], background: [u8; 4]) -> Encoded {

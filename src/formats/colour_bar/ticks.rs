@@ -1,5 +1,7 @@
 //! Ticks of a scale and their labels.
 
+use super::BarValues;
+use crate::formats::class_name;
 use crate::geometry::ValueRange;
 
 /// A tick of a scale.
@@ -17,11 +19,21 @@ const STEPS: f64 = 5.0;
 const LONGEST: usize = 10;
 
 /// Both ends, and round values between them that are at least `apart` from an end (1 is the whole scale). One tick if the ends are equal.
-pub(super) fn ticks(range: &ValueRange, apart: f64) -> Vec<Tick> {
+pub(super) fn ticks(range: &ValueRange, apart: f64, values: BarValues) -> Vec<Tick> {
+    let mut ticks = ticks_of_numbers(range, apart, if values == BarValues::Numbers { 0.0 } else { 1.0 });
+    if values == BarValues::Classes {
+        let name = |label: &str| label.parse().ok().and_then(class_name);
+        ticks.iter_mut().for_each(|tick| tick.label.extend(name(&tick.label).map(|name| format!(" {name}"))));
+    }
+    ticks
+}
+
+/// The same, of numbers that differ by at least `least`.
+fn ticks_of_numbers(range: &ValueRange, apart: f64, least: f64) -> Vec<Tick> {
     let ValueRange { min, max } = *range;
     let span = max - min;
     // A range of width 0, or of infinite width, has only its ends.
-    let step = if span > 0.0 && span.is_finite() { round_step(span / STEPS) } else { 0.0 };
+    let step = if span > 0.0 && span.is_finite() { round_step(span / STEPS).max(least) } else { 0.0 };
     if step == 0.0 || min + step == min {
         let ends = if min == max { vec![min] } else { vec![min, max] };
         return ends
@@ -71,7 +83,21 @@ mod tests {
     use super::*;
 
     fn labels(min: f64, max: f64) -> Vec<String> {
-        ticks(&ValueRange { min, max }, 0.05).into_iter().map(|tick| tick.label).collect()
+        labels_of(min, max, BarValues::Numbers)
+    }
+
+    fn labels_of(min: f64, max: f64, values: BarValues) -> Vec<String> {
+        ticks(&ValueRange { min, max }, 0.05, values).into_iter().map(|tick| tick.label).collect()
+    }
+
+    #[test]
+    fn whole_numbers_have_none_between_them_and_classes_have_names() {
+        assert_eq!(labels_of(1.0, 3.0, BarValues::Integers), ["1", "2", "3"]);
+        assert_eq!(labels_of(1.0, 2.0, BarValues::Integers), ["1", "2"]);
+        assert_eq!(labels_of(7.0, 7.0, BarValues::Integers), ["7"]);
+        assert_eq!(labels_of(0.0, 40.0, BarValues::Integers), ["0", "10", "20", "30", "40"]);
+        assert_eq!(labels_of(1.0, 2.0, BarValues::Classes), ["1 unclassified", "2 ground"]);
+        assert_eq!(labels_of(200.0, 201.0, BarValues::Classes), ["200", "201"]);
     }
 
     #[test]
@@ -87,7 +113,7 @@ mod tests {
 
     #[test]
     fn marks_lie_where_their_values_are() {
-        for tick in ticks(&ValueRange { min: -3.0, max: 17.0 }, 0.0) {
+        for tick in ticks(&ValueRange { min: -3.0, max: 17.0 }, 0.0, BarValues::Numbers) {
             let value: f64 = tick.label.parse().unwrap();
             assert!((tick.share - (value + 3.0) / 20.0).abs() < 1e-12, "{tick:?}");
         }

@@ -60,7 +60,7 @@ fn legend_of(state: &ViewState, range: Option<(Shading, ValueRange)>) -> Option<
     let from_0 = |range: ValueRange| ValueRange { min: 0.0, max: range.max.max(1.0) };
     let (name, range, colours) = match shading {
         Shading::Lit | Shading::Colour | Shading::Edl => {
-            let ColourBar { name, scale: ColourScale { map, range } } = state.colour_bar()?;
+            let ColourBar { name, scale: ColourScale { map, range }, .. } = state.colour_bar()?;
             return Some(Legend { name, range: Some(range), colours: Colours::Map(map) });
         }
         Shading::Normal => ("normal: x, y, z from −1 to 1 as red, green, blue", None, Colours::None),
