@@ -1,9 +1,10 @@
 //! `surfel render`.
 
 use super::args::{ColorBar, PassTimes, Render};
+use super::camera::{self, Room};
 use super::cut::{self, Cut};
 use super::report::{Gpu, HalfError, Report};
-use super::{camera, files, progress, reference, summary, turntable, vulkan};
+use super::{files, progress, reference, summary, turntable, vulkan};
 use std::path::Path;
 use surfel::embed::Measured;
 use surfel::estimate::Estimate;
@@ -108,7 +109,9 @@ pub fn run(args: &Render) -> Result<()> {
     let extent = extent.ok_or_else(|| Error::Usage("the inputs hold nothing that can be drawn".into()))?;
     let (middle, up) = (extent.centre(), loaded.up);
     let framed = args.turntable.map(|_| extent.turned_about(middle, up));
-    let camera = camera::make(&args.camera, file, framed.as_ref().unwrap_or(&extent), up, args.size)?;
+    let bar = colour_bar(args, loaded.coloured.as_ref(), settings.shading, &out)?;
+    let room = Room { size: args.size, bar: bar.as_ref().map_or(0, |bar| bar.width(args.size)) };
+    let camera = camera::make(&args.camera, file, framed.as_ref().unwrap_or(&extent), up, room)?;
     if let Some(note) =
         summary::culled_backs(&loaded.model.surfels, &camera, &settings).filter(|_| !args.quiet)
     {
@@ -137,7 +140,6 @@ pub fn run(args: &Render) -> Result<()> {
     if !out.is_png() {
         keep_layers(&mut outcome.picture, task.layers);
     }
-    let bar = colour_bar(args, loaded.coloured.as_ref(), task.settings.shading, &out)?;
     write_with(&outcome.picture, task.settings.shading, bar.as_ref(), &out)?;
     if let Some((count, pattern)) = args.turntable.zip(turntable::pattern(args)?) {
         let cameras = turntable::cameras(&camera, middle, up, count);

@@ -42,8 +42,9 @@ pub fn run(args: View) -> Result<()> {
         eye.is_some() || target.is_some() || fov.is_some() || parallel.is_some() || file.is_some()
     };
     let (cameras, pose) = (args.camera.clone(), file.map(|(_, pose)| pose));
-    let initial_camera =
-        move |extent: &Extent, up, size| given.then(|| camera::pose(&cameras, pose, extent, up, size));
+    let initial_camera = move |extent: &Extent, up, size| {
+        given.then(|| camera::pose(&cameras, pose, extent, up, camera::Room::whole(size)))
+    };
     let options = viewer::Options {
         inputs: args.inputs.clone(),
         filter: args.points.filter(),

@@ -30,7 +30,7 @@ pub enum BarValues {
     Numbers,
     /// Whole numbers, without labels between them.
     Integers,
-    /// Classes of the ASPRS LAS specification, whose names are labels ([`class_name`](super::class_name)).
+    /// Classes of the ASPRS LAS specification, with their names ([`class_name`](super::class_name)) where there is room.
     Classes,
 }
 
@@ -116,9 +116,19 @@ impl ColourBar {
 
     /// Positions of all parts, the name and the ticks, in a picture of this size.
     fn layout(&self, size: [u32; 2]) -> (Layout, String, Vec<Tick>) {
+        let named = self.layout_of(size, self.values);
+        let is_wide = named.0.panel.width > size[0] / 3;
+        if self.values == BarValues::Classes && is_wide {
+            self.layout_of(size, BarValues::Integers)
+        } else {
+            named
+        }
+    }
+
+    fn layout_of(&self, size: [u32; 2], values: BarValues) -> (Layout, String, Vec<Tick>) {
         let font = Font::of_height(size[0].min(size[1]) / LINES);
         let height = (f64::from(size[1]) * HEIGHT) as u32 - 2 * font.height();
-        let ticks = ticks(&self.scale.range, 1.1 * f64::from(font.height()) / f64::from(height), self.values);
+        let ticks = ticks(&self.scale.range, 1.1 * f64::from(font.height()) / f64::from(height), values);
         let name = self.title(font, size[0] / 2);
         (Layout::of(size, font, height, &name, &ticks), name, ticks)
     }
@@ -201,6 +211,15 @@ mod tests {
         let rows = [0.95, 0.75, 0.5, 0.25, 0.05].map(row_of);
         // 0.6 of the height is the bar with its name.
         assert!(rows.is_sorted() && rows[4] - rows[0] > 100, "{rows:?}");
+    }
+
+    #[test]
+    fn names_of_classes_take_at_most_a_third_of_the_width() {
+        let classes = ColourBar { values: BarValues::Classes, ..bar("classes", 1.0, 2.0) };
+        let integers = ColourBar { values: BarValues::Integers, ..classes.clone() };
+        assert_eq!(classes.width([256, 256]), integers.width([256, 256]));
+        assert!(classes.width([512, 256]) > integers.width([512, 256]) && classes.width([512, 256]) < 180);
+        assert_eq!(classes.width([100, 100]), 0);
     }
 
     #[test]
