@@ -105,7 +105,7 @@ pub struct ReadOptions {
     pub min_points: Option<u64>,
     /// Whether points are counted by class and return: [`Report::counts`](super::Report::counts).
     pub counts: bool,
-    /// Names of the columns of a text file, instead of its own.
+    /// Names of the columns of a text file, instead of its own; `-` ignores a column.
     pub columns: Option<Vec<String>>,
     /// Whether triangles are kept even if every point has a normal and a radius.
     pub triangles: bool,
@@ -144,9 +144,11 @@ pub struct Inspected<E = Error> {
 /// [`Error::Io`] if the file cannot be opened; [`Error::Input`] if the format is not supported or the declarations are invalid.
 pub fn inspect(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Result<Inspected> {
     let name = path.display().to_string();
+    let given = options.columns.as_deref();
     let source = Source::open(path, |beginning| {
         // A device may have no end: only a reader that may support the contents reads on.
-        find(&name, beginning).is_some_and(|reader| reader.knows(beginning) != Some(false))
+        let is_known = |reader: &dyn Reader| reader.knows(beginning) != Some(false);
+        find(&name, beginning, given).is_some_and(is_known) || is_named_table(beginning, given)
     })?;
     let input = Input { name: &name, source, folder: path.parent() };
     inspect_input(&input, options, progress)
@@ -177,11 +179,14 @@ pub fn levels(path: &Path) -> Result<Vec<u64>> {
     let name = path.display().to_string();
     let source = Source::open(path, |_| false)?;
     let input = Input { name: &name, source, folder: path.parent() };
-    reader_of(&input).and_then(|reader| reader.levels(&input)).map_err(|cause| cause.in_input(name.as_str()))
+    reader_of(&input, None)
+        .and_then(|reader| reader.levels(&input))
+        .map_err(|cause| cause.in_input(name.as_str()))
 }
 
 fn inspect_input(input: &Input<'_>, options: &ReadOptions, progress: &dyn Progress) -> Result<Inspected> {
-    let inspected = reader_of(input).and_then(|reader| reader.inspect(input, options, progress));
+    let reader = reader_of(input, options.columns.as_deref());
+    let inspected = reader.and_then(|reader| reader.inspect(input, options, progress));
     let Inspected { format, encoding, elements, loaded } =
         inspected.map_err(|cause| cause.in_input(input.name))?;
     let loaded = loaded.map_err(|cause| cause.in_input(input.name));
@@ -189,19 +194,25 @@ fn inspect_input(input: &Input<'_>, options: &ReadOptions, progress: &dyn Progre
 }
 
 /// The reader for a file's beginning, otherwise that of its extension, which reports what is wrong.
-fn reader_of(input: &Input<'_>) -> Parsed<&'static dyn Reader> {
+fn reader_of(input: &Input<'_>, columns: Option<&[String]>) -> Parsed<&'static dyn Reader> {
     let beginning = input.source.beginning()?;
-    find(input.name, &beginning)
+    find(input.name, &beginning, columns)
         .ok_or_else(|| sniff::name(input.name, &beginning, input.source.size()).into())
 }
 
-/// The reader of a file with this name and beginning.
-fn find(name: &str, beginning: &[u8]) -> Option<&'static dyn Reader> {
+/// Whether a file with this beginning is a table whose columns have these names.
+fn is_named_table(beginning: &[u8], columns: Option<&[String]>) -> bool {
+    columns.is_some() && text::is_table(beginning, columns)
+}
+
+/// The reader of a file with this name and beginning; `columns` name those of a table.
+fn find(name: &str, beginning: &[u8], columns: Option<&[String]>) -> Option<&'static dyn Reader> {
     let extension = name.rsplit_once('.').map(|(_, extension)| extension.to_lowercase());
     let has =
         |reader: &&&dyn Reader| extension.as_deref().is_some_and(|own| reader.extensions().contains(&own));
     let known = READERS.iter().find(|reader| reader.knows(beginning) == Some(true));
-    known.or_else(|| READERS.iter().find(has)).copied()
+    let known = known.or_else(|| READERS.iter().find(has)).copied();
+    known.or_else(|| is_named_table(beginning, columns).then_some(&text::Text as &dyn Reader))
 }
 
 /// Extensions of all supported formats, in lower case.
@@ -217,7 +228,7 @@ mod tests {
     fn a_reader_is_chosen_by_content_then_by_extension() {
         let chosen = |name, bytes| {
             let input = Input { name, source: Source::of(bytes), folder: None };
-            reader_of(&input).map(|reader| reader.name())
+            reader_of(&input, None).map(|reader| reader.name())
         };
         assert_eq!(chosen("a.txt", b"ply\nformat ascii 1.0\n"), Ok("PLY"));
         assert_eq!(chosen("a.PLY", b"0 1 2\n"), Ok("text"));

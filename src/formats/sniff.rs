@@ -1,7 +1,7 @@
 //! Identification of unsupported files, for error messages.
 
 use super::quoted::quoted;
-use super::stl;
+use super::{stl, text};
 
 /// First bytes of common file types, and the remedy.
 const KNOWN: &[(&[u8], &str)] = &[
@@ -55,8 +55,11 @@ pub(super) fn name(file: &str, bytes: &[u8], size: u64) -> String {
     if let Some(what) = known(beginning) {
         return format!("not a point cloud that can be read, but {what}");
     }
+    if let Some(what) = text::unnamed(beginning) {
+        return what;
+    }
     let line = beginning.split(|byte| matches!(byte, b'\n' | b'\r')).next().unwrap_or_default();
-    match text(beginning) {
+    match table(beginning) {
         Some(what) => format!("not a point cloud that can be read, but {what}"),
         None => format!(
             "not a point cloud that can be read: it begins with {}; give a PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, STL, SPLAT, SPZ or text file",
@@ -66,7 +69,7 @@ pub(super) fn name(file: &str, bytes: &[u8], size: u64) -> String {
 }
 
 /// Identifies text formats without a signature by their first lines that are not comments.
-fn text(beginning: &[u8]) -> Option<&'static str> {
+fn table(beginning: &[u8]) -> Option<&'static str> {
     let start = &beginning[..beginning.len().min(4096)];
     let line = start
         .split(|byte| *byte == b'\n')

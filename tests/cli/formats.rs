@@ -202,6 +202,17 @@ fn columns_can_be_named() {
     assert!(run.text().contains("understood: y x z\nskipped: c d\n"), "{}", run.text());
     let wrong = program.run("info a.txt --columns x,y,z");
     assert!(wrong.error(1).contains("5 values, and 3 columns are named"), "{}", wrong.err);
+    program.write("b.csv", "Tree,Foo,Bar,Baz\noak,1,2,3\nash,4,5,6\n");
+    let unnamed = program.run("info b.csv");
+    let cause = "x, y and z are not all among its columns (`Tree`, `Foo`, `Bar`, `Baz`)";
+    let remedy = "name the columns, for example `-,x,y,z` with --columns";
+    assert_eq!(unnamed.error(1), format!("b.csv: {cause}: {remedy}"));
+    assert!(
+        program
+            .run("info b.csv --columns -,x,y,z")
+            .text()
+            .contains("points: 2\nbounds: [1, 2, 3] to [4, 5, 6]")
+    );
 }
 
 #[test]

@@ -33,8 +33,8 @@ pub struct Points {
     /// Reads one point in N alone, from the first of each file on; neither lines nor faces
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub every: Option<u64>,
-    /// Names of the columns of text files, such as x,y,z,intensity [default: the file's first line, or by the numbers]
-    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    /// Names of the columns of text files, such as x,y,z,-,intensity, where - ignores a column [default: the file's first line, or by the numbers]
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',', allow_hyphen_values = true)]
     pub columns: Option<Vec<String>>,
     /// Radius of every surfel, in the positions' unit [default: the file's, or else estimated]
     #[arg(long, value_name = "R", value_parser = positive::<f32>, allow_hyphen_values = true)]

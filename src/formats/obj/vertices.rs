@@ -15,7 +15,7 @@ use glam::{DVec2, DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 
 /// Lines of vertices: x y z, and r g b or none.
-pub const SYNTAX: Syntax = Syntax { width: 6, is_row, parse_row };
+pub const SYNTAX: Syntax<'static> = Syntax { width: 6, is_row, parse_row: &parse_row };
 
 fn is_row(line: &[u8]) -> bool {
     keyword(line).is_some_and(|(word, _)| word == survey::VERTEX.as_bytes())

@@ -1,6 +1,7 @@
 //! Columns of a table: from a line of names, from the caller, or from the numbers of the first lines.
 
 use super::lines::{cells, comment, is_row, of};
+use super::names::{Header, IGNORED, check, has_position, meanings, numbers, start};
 use crate::formats::declared::Scalar;
 use crate::formats::source::Parsed;
 use crate::formats::table::text::number;
@@ -9,6 +10,8 @@ use crate::formats::table::text::number;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
     pub name: String,
+    /// Index of its cell in a line.
+    pub cell: usize,
     /// Declared type.
     pub scalar: Scalar,
     /// Factor of the numbers.
@@ -18,7 +21,10 @@ pub struct Column {
 /// What the beginning of a file tells.
 #[derive(Debug, PartialEq)]
 pub struct Head {
+    /// All columns but the ignored ones.
     pub columns: Vec<Column>,
+    /// Number of cells of a line.
+    pub cells: usize,
     /// Offset of the first line that may be a point, bytes.
     pub start: u64,
     /// Its number, from 1.
@@ -28,89 +34,37 @@ pub struct Head {
 /// Number of points from which columns are found.
 const SAMPLE: usize = 1000;
 
-/// Names of columns with a meaning, as writers spell them, and as [PLY](crate::formats::ply) has them.
-const NAMES: &[(&[&str], &str)] = &[
-    (&["x", "easting", "x coordinate"], "x"),
-    (&["y", "northing", "y coordinate"], "y"),
-    (&["z", "elevation", "z coordinate"], "z"),
-    (&["nx", "normalx", "normal_x"], "nx"),
-    (&["ny", "normaly", "normal_y"], "ny"),
-    (&["nz", "normalz", "normal_z"], "nz"),
-    (&["r", "red"], "red"),
-    (&["g", "green"], "green"),
-    (&["b", "blue"], "blue"),
-    (&["radius"], "radius"),
-    (&["intensity", "reflectance"], "intensity"),
-];
-
-/// Whether a file with this beginning is a table of points.
-pub fn is_table(beginning: &[u8]) -> bool {
-    names(beginning).is_some() || {
-        let first = of(beginning).find(|line| is_row(line)).unwrap_or_default();
-        let lines = of(beginning).filter(|line| comment(line).is_none() && !line.trim_ascii().is_empty());
-        // Nothing else stands before the first point but the count of a PTS file.
-        let single = lines.take_while(|line| !is_row(line)).all(|line| number(line.trim_ascii()).is_some());
-        single && cells(first).count() >= 3 && cells(first).all(|cell| number(cell).is_some())
+/// Whether a file with this beginning is a table of points, with names that are `given` for its columns or its own.
+pub fn is_table(beginning: &[u8], given: Option<&[String]>) -> bool {
+    let header = Header::of(beginning, given);
+    if header.as_ref().is_some_and(|header| has_position(&header.names)) {
+        return true;
     }
-}
-
-/// A line of names.
-struct Names {
-    names: Vec<String>,
-    /// Offset of the line after it, bytes.
-    end: usize,
-    /// Number of the line after it, from 1.
-    next: u64,
-}
-
-/// The first line with names of x, y and z, before any point.
-fn names(beginning: &[u8]) -> Option<Names> {
-    let mut end = 0;
-    for (line, next) in beginning.split_inclusive(|byte| *byte == b'\n').zip(2..) {
-        end += line.len();
-        let line = line.trim_ascii();
-        let names: Vec<String> = cells(comment(line).unwrap_or(line)).map(name).collect();
-        if ["x", "y", "z"].iter().all(|axis| names.iter().any(|name| name == axis)) {
-            return Some(Names { names, end, next });
-        }
-        if comment(line).is_none() && !line.is_empty() {
-            return None;
-        }
-    }
-    None
-}
-
-/// The name of a column; those with a meaning get that of PLY.
-fn name(cell: &[u8]) -> String {
-    let own = String::from_utf8_lossy(cell).trim_matches(['"', '\'', ' ']).to_owned();
-    let lower = own.to_lowercase();
-    // A unit in brackets is none of the name.
-    let bare = lower.split(['(', '[']).next().unwrap_or_default().trim();
-    let known = NAMES.iter().find(|(spellings, _)| spellings.contains(&bare));
-    known.map_or(own, |(_, name)| (*name).to_owned())
+    let rest = &beginning[header.map_or(start(beginning), |header| header.end)..];
+    let first = of(rest).find(|line| is_row(line)).unwrap_or_default();
+    let lines = of(rest).filter(|line| comment(line).is_none() && !line.trim_ascii().is_empty());
+    // Nothing else stands before the first point but the count of a PTS file.
+    let single = lines.take_while(|line| !is_row(line)).all(|line| number(line.trim_ascii()).is_some());
+    let count = numbers(first);
+    // Columns without names hold numbers alone.
+    single && count >= 3 && (given.is_some() || count == cells(first).count())
 }
 
 impl Head {
     /// Finds the columns; `given` are names instead of the file's. Values that can be colours or normals are what is preferred.
     pub fn of(beginning: &[u8], given: Option<&[String]>, prefers_colours: bool) -> Parsed<Self> {
-        let line = names(beginning);
-        let (start, number) = line.as_ref().map_or((0, 1), |line| (line.end, line.next));
+        let header = Header::of(beginning, given);
+        let (start, line) = header.as_ref().map_or((start(beginning), 1), |header| (header.end, header.next));
         let sample = sample(&beginning[start..]);
-        let count = sample.first().map(Vec::len).ok_or("it has no points: give a file with at least one")?;
-        let names = match (given, line) {
-            (Some(given), _) => given.iter().map(|given| name(given.as_bytes())).collect(),
-            (None, Some(line)) => line.names,
-            (None, None) => guess(&sample, count, prefers_colours),
+        let cells = sample.first().map(Vec::len).ok_or("it has no points: give a file with at least one")?;
+        let names = match (given, header) {
+            (Some(given), _) => meanings(given.iter().map(String::as_bytes)),
+            (None, Some(header)) => header.names,
+            (None, None) => guess(&sample, cells, prefers_colours),
         };
-        if names.len() != count {
-            return Err(format!(
-                "its lines have {count} values, and {} columns are named: name each once",
-                names.len()
-            )
-            .into());
-        }
+        check(&names, of(&beginning[start..]).find(|line| is_row(line)).unwrap_or_default())?;
         let columns = typed(names, &sample);
-        Ok(Self { columns, start: start as u64, line: number })
+        Ok(Self { columns, cells, start: start as u64, line })
     }
 }
 
@@ -168,9 +122,9 @@ fn typed(names: Vec<String>, sample: &[Vec<f64>]) -> Vec<Column> {
     let channels = || names.iter().enumerate().filter(|(_, name)| is_colour(name)).map(|(column, _)| column);
     let largest = sample.iter().flat_map(|row| channels().map(|column| row[column])).fold(0.0, f64::max);
     let colour = colour(largest);
-    let column = |name: String| {
+    let column = |(cell, name): (usize, String)| {
         let (scalar, factor) = if is_colour(&name) { colour } else { (Scalar::F64, 1.0) };
-        Column { name, scalar, factor }
+        Column { name, cell, scalar, factor }
     };
-    names.into_iter().map(column).collect()
+    names.into_iter().enumerate().filter(|(_, name)| name != IGNORED).map(column).collect()
 }

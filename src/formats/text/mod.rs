@@ -1,14 +1,16 @@
 //! Reader of points as text, one per line: XYZ, PTS, CSV and the like.
 //!
 //! Numbers stand between white space, commas or semicolons. Lines that begin with `#` or `//` and empty lines are comments; so are lines of
-//! one number, which PTS files have before each scan. A first line of names, also as a comment, names the columns; otherwise
-//! [`ReadOptions::columns`] do, or the numbers of the first lines: after x y z and up to two others, of which the first is the intensity, threes
-//! of whole numbers are colours and unit vectors are normals. An empty cell is no number.
+//! one number, which PTS files have before each scan. A first line of names, also as a comment, names the columns, unless
+//! [`ReadOptions::columns`] do; without either the numbers of the first lines: after x y z and up to two others, of which the first is the
+//! intensity, threes of whole numbers are colours and unit vectors are normals. An empty cell is no number. A column with the name `-` is
+//! ignored. A byte order mark is none of the text.
 //!
 //! Colours are sRGB-encoded: whole numbers to 255 or 65535, or fractions to 1.
 
 pub mod columns;
 pub mod lines;
+mod names;
 pub mod rows;
 #[cfg(test)]
 mod tests;
@@ -23,7 +25,10 @@ use crate::Progress;
 use crate::error::Cause;
 use columns::{Column, Head};
 use lines::Piece;
-use rows::Syntax;
+use rows::{Syntax, parse_cells};
+
+pub(super) use columns::is_table;
+pub(super) use names::unnamed;
 
 /// Points as text.
 pub(super) struct Text;
@@ -38,7 +43,7 @@ impl Reader for Text {
     }
 
     fn knows(&self, beginning: &[u8]) -> Option<bool> {
-        Some(columns::is_table(beginning))
+        Some(is_table(beginning, None))
     }
 
     fn inspect(
@@ -48,9 +53,10 @@ impl Reader for Text {
         progress: &dyn Progress,
     ) -> Parsed<Inspected<Cause>> {
         let source = &input.source;
-        let beginning = input.beginning(lines::BEGINNING, columns::is_table)?;
-        let Head { columns, start, line } =
-            Head::of(&beginning, options.columns.as_deref(), input.name.to_lowercase().ends_with(".xyzrgb"))?;
+        let given = options.columns.as_deref();
+        let beginning = input.beginning(lines::BEGINNING, |beginning| is_table(beginning, given))?;
+        let Head { columns, cells, start, line } =
+            Head::of(&beginning, given, input.name.to_lowercase().ends_with(".xyzrgb"))?;
         // The lines are counted, and then read.
         let meter = Meter::new(progress, 2 * source.size());
         let (pieces, stated) = lines::pieces(source, start, line, &meter)?;
@@ -61,7 +67,8 @@ impl Reader for Text {
             count: pieces.iter().map(|piece| piece.rows as u64).sum(),
             properties: columns.iter().map(property).collect(),
         };
-        let loaded = load(source, &element, &columns, &pieces, options, &meter).map(|mut loaded| {
+        let table = Table { element: &element, columns: &columns, cells, pieces: &pieces };
+        let loaded = load(source, &table, options, &meter).map(|mut loaded| {
             loaded.report.stated = stated.filter(|points| *points != element.count);
             loaded
         });
@@ -69,14 +76,17 @@ impl Reader for Text {
     }
 }
 
-fn load(
-    source: &Source,
-    element: &Element,
-    columns: &[Column],
-    pieces: &[Piece],
-    options: &ReadOptions,
-    meter: &Meter,
-) -> Parsed<Loaded> {
+/// Where the points are in a file.
+struct Table<'a> {
+    element: &'a Element,
+    columns: &'a [Column],
+    /// Number of cells of a line.
+    cells: usize,
+    pieces: &'a [Piece],
+}
+
+fn load(source: &Source, table: &Table<'_>, options: &ReadOptions, meter: &Meter) -> Parsed<Loaded> {
+    let Table { element, columns, cells, pieces } = *table;
     let layout = Layout::of(element, options, false)?;
     let factors: Vec<(usize, f64)> =
         layout.used().into_iter().map(|(column, index)| (column, columns[index].factor)).collect();
@@ -84,7 +94,12 @@ fn load(
         let factor = factors.iter().find(|(own, _)| *own == column).map_or(1.0, |(_, factor)| *factor);
         values.iter_mut().for_each(|value| *value *= factor);
     };
-    let (arrays, tally) = rows::read(source, pieces, Syntax::table(columns.len()), &layout, finish, meter)?;
+    let kept: Vec<bool> = (0..cells).map(|cell| columns.iter().any(|column| column.cell == cell)).collect();
+    let parse_row = |line: &[u8], row: &mut [f64]| {
+        parse_cells(line, row, cells, |cell| kept.get(cell).copied().unwrap_or(false))
+    };
+    let syntax = Syntax { width: columns.len(), is_row: lines::is_row, parse_row: &parse_row };
+    let (arrays, tally) = rows::read(source, pieces, syntax, &layout, finish, meter)?;
     meter.finish();
     let mut points = Points::new(arrays, tally, &layout)?;
     let attributes = points.take_attributes(element, &layout);

@@ -6,21 +6,28 @@ use crate::formats::quoted::quoted;
 use crate::formats::source::{Parsed, Source};
 use crate::formats::table::{Arrays, Block, Layout, ROWS, Rows, Tally, fill, text};
 
+/// Parses the values of a point from a line.
+pub type ParseRow<'a> = dyn Fn(&[u8], &mut [f64]) -> Parsed<()> + Sync + 'a;
+
 /// How lines become points.
 #[derive(Clone, Copy)]
-pub struct Syntax {
+pub struct Syntax<'a> {
     /// Number of values of a point.
     pub width: usize,
     /// Whether a line is a point.
     pub is_row: fn(&[u8]) -> bool,
     /// Parses the values of a point.
-    pub parse_row: fn(&[u8], &mut [f64]) -> Parsed<()>,
+    pub parse_row: &'a ParseRow<'a>,
 }
 
-impl Syntax {
+impl Syntax<'_> {
     /// Lines of `width` numbers.
     pub fn table(width: usize) -> Self {
-        Self { width, is_row: lines::is_row, parse_row }
+        Self {
+            width,
+            is_row: lines::is_row,
+            parse_row: &|line, row| parse_cells(line, row, row.len(), |_| true),
+        }
     }
 }
 
@@ -28,7 +35,7 @@ impl Syntax {
 pub fn read(
     source: &Source,
     pieces: &[Piece],
-    syntax: Syntax,
+    syntax: Syntax<'_>,
     layout: &Layout,
     finish: impl Fn(usize, &mut [f64]) + Sync + Send,
     meter: &Meter,
@@ -58,7 +65,7 @@ pub fn read(
 pub fn parse(
     bytes: &[u8],
     first: u64,
-    Syntax { width, is_row, parse_row }: Syntax,
+    Syntax { width, is_row, parse_row }: Syntax<'_>,
     rows: &mut Rows,
     give: impl Fn(&[f64], &mut Block),
 ) -> Parsed<()> {
@@ -76,24 +83,35 @@ pub fn parse(
     Ok(())
 }
 
-/// Parses the values of a line.
-fn parse_row(line: &[u8], row: &mut [f64]) -> Parsed<()> {
-    let mut count = 0;
+/// Parses those of the `count` cells of a line that are kept.
+pub fn parse_cells(
+    line: &[u8],
+    row: &mut [f64],
+    count: usize,
+    is_kept: impl Fn(usize) -> bool,
+) -> Parsed<()> {
+    let mut cells = 0;
+    let mut row = row.iter_mut();
     for cell in lines::cells(line) {
-        if let Some(to) = row.get_mut(count) {
-            *to = match cell {
-                b"" => f64::NAN,
-                cell => text::number(cell).ok_or_else(|| {
-                    format!("{} is not a number: mend the line or mark it with #", quoted(cell))
-                })?,
-            };
+        if is_kept(cells)
+            && let Some(to) = row.next()
+        {
+            *to = value(cell)?;
         }
-        count += 1;
+        cells += 1;
     }
-    if count == row.len() {
+    if cells == count {
         Ok(())
     } else {
-        Err(format!("{count} values, where the first line has {}: mend it, or mark it with #", row.len())
-            .into())
+        Err(format!("{cells} values, where the first line has {count}: mend it, or mark it with #").into())
     }
+}
+
+/// The number in a cell; an empty one is no number.
+fn value(cell: &[u8]) -> Parsed<f64> {
+    if cell.is_empty() {
+        return Ok(f64::NAN);
+    }
+    text::number(cell)
+        .ok_or_else(|| format!("{} is not a number: mend the line or mark it with #", quoted(cell)).into())
 }

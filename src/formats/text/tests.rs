@@ -54,6 +54,58 @@ fn names_come_from_the_first_line() {
 }
 
 #[test]
+fn names_of_other_programs_are_understood() {
+    let (x, rgb, n) = (["x", "y", "z"], ["red", "green", "blue"], ["nx", "ny", "nz"]);
+    let of = |names: &str, row: &str| understood(&format!("{names}\n{row}\n{row}\n"));
+    assert_eq!(of("Easting,Northing,Elev,Red,Green,Blue", "1,2,3,4,5,6"), [x, rgb].concat());
+    assert_eq!(of("Northing (m);Easting (m);Altitude (m)", "1;2;3"), ["y", "x", "z"]);
+    assert_eq!(of("//X Y Z Rf Gf Bf", "1 2 3 0.5 0 1"), [x, rgb].concat());
+    let paraview = "\"Normals:0\",\"Normals:1\",\"Normals:2\",\"Points:0\",\"Points:1\",\"Points:2\"";
+    assert_eq!(of(paraview, "0,0,1,1,2,3"), [n, x].concat());
+    assert_eq!(of("x,y,z,height", "1,2,3,4"), x, "a height beside z is another number");
+    assert_eq!(of("\u{feff}x,y,z", "1,2,3"), x);
+    assert_eq!(parsed("\u{feff}1 2 3\n").unwrap().cloud.origin, glam::DVec3::new(1.0, 2.0, 3.0));
+    for (names, has) in [
+        ("Lon,Lat,Height", "longitude and latitude (`Lon`, `Lat`, `Height`), which are degrees"),
+        ("a,b,c,label", "(`a`, `b`, `c`, `label`): name the columns, for example `x,y,z,-`"),
+        ("foo,x,Radius,b c,y,label", "for example `z,x,radius,-,y,-`"),
+    ] {
+        let row = ["1"; 8][..names.split(',').count() - 1].join(",");
+        let row = if names.contains("label") { row + ",oak" } else { row + ",1" };
+        for name in ["a.csv", "a"] {
+            let error = read_bytes(name, format!("{names}\n{row}\n").as_bytes(), &ReadOptions::default());
+            let error = error.unwrap_err().to_string();
+            assert!(error.contains(has), "{error}");
+        }
+    }
+}
+
+#[test]
+fn columns_are_named_and_ignored_by_the_caller() {
+    let read = |text: &str, columns: &str| {
+        let columns = Some(columns.split(',').map(str::to_owned).collect());
+        read_bytes("a", text.as_bytes(), &ReadOptions { columns, ..Default::default() })
+    };
+    let rows = "oak,1,2,3,4\n,5,6,7,8\nash,5,6,8,8\n";
+    for header in ["", "Tree,Foo,Bar,Baz,Radius\n", "# trees\n\n"] {
+        let Loaded { cloud, report, .. } = read(&format!("{header}{rows}"), "-,x,z,y,-").unwrap();
+        assert_eq!((cloud.len(), report.skipped.len(), cloud.radii.is_some()), (3, 0, false), "{header}");
+        let first = cloud.origin + cloud.positions[0].as_dvec3();
+        assert_eq!(first, glam::DVec3::new(1.0, 3.0, 2.0), "{header}");
+    }
+    assert_eq!(read("\u{feff}1 2 3 7\n", "x,y,z,radius").unwrap().cloud.radii, Some(vec![7.0]));
+    for (columns, has) in [
+        ("x,y,z", "lines have 5 values, and 3 columns are named: name each once, or `-` to ignore it"),
+        ("tree,x,y,z,-", "column `tree` has text, `oak`: name the columns, for example `-,x,y,z,-`"),
+        ("-,lon,lat,height,-", "longitude and latitude"),
+        ("-,a,b,c,d", "for example `-,x,y,z,d`"),
+    ] {
+        let error = read(rows, columns).unwrap_err().to_string();
+        assert!(error.contains(has), "{columns}: {error}");
+    }
+}
+
+#[test]
 fn columns_without_names_are_found_by_their_numbers() {
     let x = ["x", "y", "z"];
     let of = |row: &str| understood(&format!("{row}\n{row}\n"));
@@ -135,6 +187,8 @@ fn damage_is_named() {
     has("nan nan nan\n", "none of its 1 points");
     has("", "is empty");
     has("1 2\n3 4\n", "not a point cloud");
+    has("1.5,2,3,foo\n", "has text, `foo`: name the columns, for example `x,y,z,-`");
+    has("x,y,z,tree\n1,2,3,oak\n", "column `tree` has text, `oak`: name the columns, for example `x,y,z,-`");
     let long = format!("1 2 3\n{}\n", "1 ".repeat(1 << 20));
     has(&long, "a line of more than 65536 bytes");
 }
