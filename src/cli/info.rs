@@ -1,5 +1,6 @@
 //! `surfel info`.
 
+mod bounds;
 mod counts;
 mod value;
 
@@ -11,7 +12,7 @@ use std::path::Path;
 use surfel::estimate::{Estimate, Estimated, spacing};
 use surfel::formats::declared::Element;
 use surfel::formats::{self, Dropped, Faces, Inspected, Lines, Loaded, ReadOptions, Report};
-use surfel::geometry::{Cloud, Colours, Model, Parts, View};
+use surfel::geometry::{Cloud, Colours, Model, View};
 use surfel::load::{check_filter, check_points, scene, scene_cloud};
 use surfel::{Result, thousands};
 
@@ -35,10 +36,11 @@ pub fn run(args: &Info) -> Result<()> {
     print(&header(path, &format!("{format}, {encoding}"), &elements))?;
     let Loaded { cloud, report, attributes } = loaded?;
     print(&(properties(&report) + &counts::text(&attributes) + &connectivity(&report, &cloud)))?;
+    let bounds = bounds_text(&cloud);
     let model = kept(cloud, args).into_model(args.points.polygons, &args.points.estimate(), &*bars);
     let (model, estimated) = model.map_err(|error| error.in_input(path.display().to_string()))?;
     drop(bars);
-    let text = describe(&model, report.points) + &sources(&estimated);
+    let text = describe(&model, report.points, &bounds) + &sources(&estimated);
     print(&(text + &dropped(report.dropped, &estimated) + &stated(&report) + &trailing(&report)))
 }
 
@@ -62,11 +64,15 @@ fn kept(cloud: Cloud, args: &Info) -> Cloud {
 /// Describes a built-in scene under these options.
 fn scene_text(name: &str, how: &Estimate) -> Result<String> {
     let cloud = scene_cloud(name)?;
-    let points = cloud.len() as u64;
+    let (points, bounds) = (cloud.len() as u64, bounds_text(&cloud));
     let model = cloud.into_model(true, how, &());
     let (model, estimated) = model.map_err(|error| error.in_input(name))?;
     let dropped = dropped(Dropped::default(), &estimated);
-    Ok(format!("{name}: built-in scene\n{}{}{dropped}", describe(&model, points), sources(&estimated)))
+    Ok(format!(
+        "{name}: built-in scene\n{}{}{dropped}",
+        describe(&model, points, &bounds),
+        sources(&estimated)
+    ))
 }
 
 /// Describes the header of a file.
@@ -112,8 +118,13 @@ fn properties(report: &Report) -> String {
     )
 }
 
-/// Describes a model of `points` points.
-fn describe(model: &Model, points: u64) -> String {
+/// Describes the bounds of the points, without their discs.
+fn bounds_text(cloud: &Cloud) -> String {
+    bounds::of(cloud).map_or(String::new(), |[min, max]| format!("bounds: {min} to {max}\n"))
+}
+
+/// Describes a model of `points` points within these bounds.
+fn describe(model: &Model, points: u64, bounds: &str) -> String {
     let Model { surfels, primitives } = model;
     let count = |count: usize| thousands(count as u64);
     let mut text = format!("points: {}\nsurfels: {}\n", thousands(points), count(surfels.len()));
@@ -123,9 +134,7 @@ fn describe(model: &Model, points: u64) -> String {
         let _ = writeln!(text, "ribbons: {ribbons}\ntubes: {tubes}\ndrawn triangles: {triangles}");
         let _ = writeln!(text, "vertices of these: {vertices}, {}", range_text(&primitives.radii));
     }
-    if let Some(bounds) = Parts::from(model).bounds() {
-        let _ = writeln!(text, "bounds: {} to {}", bounds.min, bounds.max);
-    }
+    text += bounds;
     if let Some(spacing) = spacing(&surfels.positions) {
         let _ = writeln!(text, "spacing: {spacing}, the median distance to the nearest point");
     }

@@ -9,7 +9,7 @@ pub use counts::{FilterCounts, class_name};
 
 use super::declared::{Element, Kind};
 use super::source::Parsed;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use std::num::NonZeroU64;
 
 /// Conditions that all points that are read meet. Faces and lines of points that are left out are left out, too.
@@ -100,9 +100,20 @@ impl Filter {
         Ok(columns)
     }
 
-    /// Whether a position is within the bounds.
+    /// The conditions for coordinates that are declared as `f32`: bounds in decimals include the coordinates that they are rounded to.
+    pub(super) fn for_single_precision(self) -> Self {
+        let wider = |[min, max]: [DVec3; 2]| {
+            let [min, max] = [min, max].map(|at| at.as_vec3().to_array());
+            [min.map(f32::next_down), max.map(f32::next_up)].map(|at| Vec3::from(at).as_dvec3())
+        };
+        Self { bounds: self.bounds.map(wider), ..self }
+    }
+
+    /// Whether a position is within the bounds, up to the rounding of coordinates that are scaled and shifted.
     pub(super) fn contains(&self, at: DVec3) -> bool {
-        self.bounds.is_none_or(|[min, max]| at.cmpge(min).all() && at.cmple(max).all())
+        const ROUNDING: f64 = 1e-14;
+        let error = at.abs() * ROUNDING;
+        self.bounds.is_none_or(|[min, max]| (at + error).cmpge(min).all() && (at - error).cmple(max).all())
     }
 
     /// Whether a point at a position with these values of the [`PROPERTIES`] is read.

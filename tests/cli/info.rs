@@ -15,8 +15,8 @@ fn a_file_is_described() {
         "skipped: none",
         "points: 4",
         "surfels: 3",
-        // The discs' bounds, by the largest radius.
-        "bounds: [-3, -3, -3] to [7, 3, 3]",
+        // Those of the points, without their discs.
+        "bounds: [0, 0, 0] to [4, 0, 0]",
         "spacing: 2, the median distance to the nearest point",
         "radius: 1 to 3, median 2",
         "colours: none",
@@ -25,6 +25,29 @@ fn a_file_is_described() {
         "left out: 1 without a finite position, 0 less than a tenth opaque, 0 that no face uses, 0 outliers",
     ] {
         assert!(run.text().lines().any(|have| have == line), "no `{line}` in\n{}", run.text());
+    }
+}
+
+#[test]
+fn all_points_are_in_the_bounds_that_are_printed() {
+    let program = Program::new();
+    let sample = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/formats/format7.laz");
+    let rows = ["0.1 -0.3 7 0 0 1 1", "0.7 0.2 9.1 0 0 1 1"];
+    program
+        .write("float.ply", surfels(&rows))
+        .write("text.xyz", "600000.1 0 0.3\n600000.7 0.1 9\n600001 0.2 1\n");
+    for file in [sample, "float.ply", "text.xyz"] {
+        let json = |options: &str| -> serde_json::Value {
+            serde_json::from_str(program.run(&format!("info {file} --json {options}")).text()).unwrap()
+        };
+        let bounds = &json("")["bounds"];
+        let numbers: Vec<String> = ["min", "max"]
+            .iter()
+            .flat_map(|end| bounds[end].as_array().unwrap().iter().map(ToString::to_string))
+            .collect();
+        assert!(numbers.iter().all(|number| number.len() < 14), "{numbers:?}");
+        let kept = json(&format!("--bounds={}", numbers.join(",")));
+        assert_eq!(kept["left_out"]["filtered"], 0, "{file}: {numbers:?}");
     }
 }
 

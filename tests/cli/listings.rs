@@ -48,7 +48,7 @@ fn a_file_is_described_in_json() {
     assert_eq!((&info["input"], &info["format"]), (&"a.ply".into(), &"ascii".into()));
     assert_eq!((&info["points"], &info["surfels"]), (&4.into(), &3.into()));
     assert_eq!(info["elements"][0]["properties"][3], serde_json::json!({ "name": "nx", "kind": "float" }));
-    assert_eq!(info["bounds"]["max"], serde_json::json!([7.0, 3.0, 3.0]));
+    assert_eq!(info["bounds"]["max"], serde_json::json!([4.0, 0.0, 0.0]));
     assert_eq!(info["radius"], serde_json::json!({ "min": 1.0, "max": 3.0, "median": 2.0 }));
     assert_eq!(info["estimated"]["normals"]["given"], 3);
     assert_eq!(info["left_out"]["without_position"], 1);

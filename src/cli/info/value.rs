@@ -1,6 +1,6 @@
 //! `surfel info --json`.
 
-use super::counts;
+use super::{bounds, counts};
 use crate::cli::args::Info;
 use crate::cli::files::print_json;
 use crate::cli::{progress, report};
@@ -10,7 +10,7 @@ use surfel::Result;
 use surfel::estimate::{Estimated, spacing};
 use surfel::formats::declared::Element;
 use surfel::formats::{self, Dropped, Inspected, Loaded, Report};
-use surfel::geometry::{Cloud, Colours, Model, Parts, View};
+use surfel::geometry::{Cloud, Colours, Model, View};
 use surfel::load::{scene, scene_cloud};
 
 /// The entries of a JSON object.
@@ -87,10 +87,10 @@ fn read(all: &mut Object, report: &Report, cloud: &Cloud) {
 /// Adds the entries of the model of `points` points.
 fn model(all: &mut Object, args: &Info, (name, points): (&str, u64), cloud: Cloud) -> Result<()> {
     let polygons = args.points.polygons || scene(&args.input).is_some();
+    let bounds = bounds::of(&cloud);
     let made = cloud.into_model(polygons, &args.points.estimate(), &*progress::bars(false));
     let (model, estimated) = made.map_err(|error| error.in_input(name))?;
     let Model { surfels, primitives } = &model;
-    let bounds = Parts::from(&model).bounds();
     let colours = match surfels.colours.as_ref().or(primitives.colours.as_ref()) {
         None => Value::Null,
         Some(Colours::Srgb8(_)) => "srgb8".into(),
@@ -102,7 +102,7 @@ fn model(all: &mut Object, args: &Info, (name, points): (&str, u64), cloud: Clou
         "ribbons": primitives.ribbons.len(),
         "tubes": primitives.tubes.len(),
         "triangles": primitives.triangles.len(),
-        "bounds": bounds.map(|bounds| json!({ "min": bounds.min.to_array(), "max": bounds.max.to_array() })),
+        "bounds": bounds.map(|[min, max]| json!({ "min": min.to_array(), "max": max.to_array() })),
         "spacing": spacing(&surfels.positions),
         "radius": range(&surfels.radii),
         "radius_of_lines": range(&primitives.radii),

@@ -77,7 +77,11 @@ impl Layout {
             colour: None,
             narrow,
             origin: None,
-            filter: options.filter.clone(),
+            filter: if narrow {
+                options.filter.clone().for_single_precision()
+            } else {
+                options.filter.clone()
+            },
             counts: options.counts,
             attributes: Vec::new(),
             diameters: false,
