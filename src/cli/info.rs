@@ -2,46 +2,60 @@
 
 mod bounds;
 mod counts;
+mod input;
 mod value;
 
 use super::args::Info;
 use super::files::print;
 use super::progress;
+use input::Input;
+use std::ffi::OsStr;
 use std::fmt::Write;
 use std::path::Path;
-use surfel::estimate::{Estimate, Estimated, spacing};
-use surfel::formats::declared::Element;
-use surfel::formats::{self, Dropped, Faces, Inspected, Lines, Loaded, ReadOptions, Report};
-use surfel::geometry::{Cloud, Colours, Model, View};
-use surfel::load::{check_filter, check_points, scene, scene_cloud};
+use surfel::estimate::{Estimated, spacing};
+use surfel::formats::declared::{Element, Kind};
+use surfel::formats::{self, Dropped, Faces, Inspected, Lines, ReadOptions, Report};
+use surfel::geometry::{Cloud, Colours, Model, Surfels, View};
+use surfel::load::{check_filter, check_points, scene};
 use surfel::{Result, thousands};
 
-/// Number of skipped names that are printed; the header lists all of them.
+/// Number of names of skipped elements that are printed; the header lists all of them.
 const MOST_NAMES: usize = 8;
 
-/// Prints the contents of a file or scene. If its points cannot be rendered, prints what the header declares and fails with the cause.
+/// Prints the contents of files and scenes. If the points of one cannot be used, prints what its header declares and fails with the cause.
 pub fn run(args: &Info) -> Result<()> {
-    check_points(&[args.input.as_ref()], args.points.points)?;
-    check_filter(&[args.input.as_ref()], &args.points.filter())?;
+    let inputs: Vec<&OsStr> = args.inputs.iter().map(AsRef::as_ref).collect();
+    check_points(&inputs, args.points.points)?;
+    check_filter(&inputs, &args.points.filter())?;
     if args.json {
         return value::run(args);
     }
-    if let Some(name) = scene(&args.input) {
-        return scene_text(name, &args.points.estimate()).and_then(|text| print(&text));
-    }
-    let path = Path::new(&args.input);
+    inputs.into_iter().try_for_each(|input| match scene(input) {
+        Some(name) => scene_text(name, args),
+        None => file_text(Path::new(input), args),
+    })
+}
+
+/// Prints the contents of a file.
+fn file_text(path: &Path, args: &Info) -> Result<()> {
     let bars = progress::bars(false);
     let Inspected { format, encoding, elements, loaded } =
         formats::inspect(path, &read_options(args), &*bars)?;
-    print(&header(path, &format!("{format}, {encoding}"), &elements))?;
-    let Loaded { cloud, report, attributes } = loaded?;
-    print(&(properties(&report) + &counts::text(&attributes) + &connectivity(&report, &cloud)))?;
-    let bounds = bounds_text(&cloud);
-    let model = kept(cloud, args).into_model(args.points.polygons, &args.points.estimate(), &*bars);
-    let (model, estimated) = model.map_err(|error| error.in_input(path.display().to_string()))?;
     drop(bars);
-    let text = describe(&model, report.points, &bounds) + &sources(&estimated);
-    print(&(text + &dropped(report.dropped, &estimated) + &stated(&report) + &trailing(&report)))
+    print(&header(path, &format!("{format}, {encoding}"), &elements))?;
+    let mut loaded = loaded?;
+    let report = loaded.report.clone();
+    let counts = counts::text(&std::mem::take(&mut loaded.attributes));
+    print(&(properties(&report) + &counts + &connectivity(&report, &loaded.cloud)))?;
+    let (text, estimated) = Input::of_file(path, loaded, args).text(args)?;
+    print(&(text + &dropped(report.dropped, estimated.as_ref()) + &stated(&report) + &trailing(&report)))
+}
+
+/// Prints the contents of a built-in scene.
+fn scene_text(name: &str, args: &Info) -> Result<()> {
+    let (text, estimated) = Input::of_scene(name)?.text(args)?;
+    let dropped = dropped(Dropped::default(), estimated.as_ref());
+    print(&format!("{name}: built-in scene\n{text}{dropped}"))
 }
 
 /// What is read of a file.
@@ -54,25 +68,6 @@ fn read_options(args: &Info) -> ReadOptions {
         attributes: counts::wanted(),
         ..Default::default()
     }
-}
-
-/// The points of a file that are kept.
-fn kept(cloud: Cloud, args: &Info) -> Cloud {
-    args.points.points.map(|points| cloud.some(points as usize)).unwrap_or(cloud)
-}
-
-/// Describes a built-in scene under these options.
-fn scene_text(name: &str, how: &Estimate) -> Result<String> {
-    let cloud = scene_cloud(name)?;
-    let (points, bounds) = (cloud.len() as u64, bounds_text(&cloud));
-    let model = cloud.into_model(true, how, &());
-    let (model, estimated) = model.map_err(|error| error.in_input(name))?;
-    let dropped = dropped(Dropped::default(), &estimated);
-    Ok(format!(
-        "{name}: built-in scene\n{}{}{dropped}",
-        describe(&model, points, &bounds),
-        sources(&estimated)
-    ))
 }
 
 /// Describes the header of a file.
@@ -104,50 +99,57 @@ fn listed(names: &[String], most: usize) -> String {
     }
 }
 
-/// Lists the properties that are understood and those that are skipped.
+/// Lists the properties that are understood and those that points can be coloured by.
 fn properties(report: &Report) -> String {
-    // Only a few properties are ever understood.
-    let (understood, skipped) = (listed(&report.understood, usize::MAX), listed(&report.skipped, MOST_NAMES));
+    let is_list = |name: &&String| {
+        let mut all = report.elements.iter().flat_map(|element| &element.properties);
+        all.any(|property| property.name == **name && matches!(property.kind, Kind::List { .. }))
+    };
+    let (lists, numbers): (Vec<&String>, Vec<&String>) = report.skipped.iter().partition(is_list);
+    let numbers: Vec<String> = numbers.into_iter().map(|name| printable(name)).collect();
+    let lists: Vec<String> = lists.into_iter().cloned().collect();
     let mut text = String::new();
     for (name, value) in &report.details {
         let _ = writeln!(text, "{name}: {}", printable(value));
     }
-    text + &format!(
-        "understood: {understood}\nskipped: {skipped}\nskipped elements: {}\n",
-        listed(&report.skipped_elements, MOST_NAMES)
-    )
+    let _ = writeln!(text, "understood: {}", listed(&report.understood, usize::MAX));
+    let numbers = if numbers.is_empty() { "none".into() } else { numbers.join(", ") };
+    let _ = writeln!(text, "for --color-by: {numbers}");
+    if !lists.is_empty() {
+        let _ = writeln!(text, "skipped: {}", listed(&lists, usize::MAX));
+    }
+    let _ = writeln!(text, "skipped elements: {}", listed(&report.skipped_elements, MOST_NAMES));
+    text
 }
 
-/// Describes the bounds of the points, without their discs.
-fn bounds_text(cloud: &Cloud) -> String {
-    bounds::of(cloud).map_or(String::new(), |[min, max]| format!("bounds: {min} to {max}\n"))
-}
-
-/// Describes a model of `points` points within these bounds.
-fn describe(model: &Model, points: u64, bounds: &str) -> String {
-    let Model { surfels, primitives } = model;
+/// Describes the elements of a model, with the radii of lines and triangles.
+fn elements_text(Model { surfels, primitives }: &Model) -> String {
     let count = |count: usize| thousands(count as u64);
-    let mut text = format!("points: {}\nsurfels: {}\n", thousands(points), count(surfels.len()));
+    let mut text = format!("surfels: {}\n", count(surfels.len()));
     if !primitives.is_empty() {
         let [ribbons, tubes] = [primitives.ribbons.len(), primitives.tubes.len()].map(count);
         let [triangles, vertices] = [primitives.triangles.len(), primitives.len()].map(count);
         let _ = writeln!(text, "ribbons: {ribbons}\ntubes: {tubes}\ndrawn triangles: {triangles}");
         let _ = writeln!(text, "vertices of these: {vertices}, {}", range_text(&primitives.radii));
     }
-    text += bounds;
-    if let Some(spacing) = spacing(&surfels.positions) {
-        let _ = writeln!(text, "spacing: {spacing}, the median distance to the nearest point");
-    }
-    if !surfels.is_empty() {
-        let _ = writeln!(text, "{}", range_text(&surfels.radii));
-    }
-    let colours = match surfels.colours.as_ref().or(primitives.colours.as_ref()) {
-        None => "none",
-        Some(Colours::Srgb8(_)) => "sRGB, 8 bits",
-        Some(Colours::Linear(_)) => "linear, float",
-    };
-    let _ = writeln!(text, "colours: {colours}");
     text
+}
+
+/// Describes distances and radii of surfels.
+fn sizes(surfels: &Surfels) -> String {
+    let spacing = spacing(&surfels.positions).map_or(String::new(), |spacing| {
+        format!("spacing: {spacing}, the median distance to the nearest point\n")
+    });
+    spacing + &if surfels.is_empty() { String::new() } else { range_text(&surfels.radii) + "\n" }
+}
+
+/// Describes colours.
+fn colours_text(colours: Option<&Colours>) -> &'static str {
+    match colours {
+        None => "colours: none\n",
+        Some(Colours::Srgb8(_)) => "colours: sRGB, 8 bits\n",
+        Some(Colours::Linear(_)) => "colours: linear, float\n",
+    }
 }
 
 /// Minimum, maximum and median of radii; `None` if there are none.
@@ -206,12 +208,14 @@ fn connectivity(report: &Report, cloud: &Cloud) -> String {
     text
 }
 
+/// Numbers of points, and what they are of: those above 0.
+fn list(counts: &[(u64, &str)]) -> String {
+    let some = counts.iter().filter(|(count, _)| *count > 0);
+    some.map(|(count, what)| format!("{} {what}", thousands(*count))).collect::<Vec<_>>().join(", ")
+}
+
 /// Describes where normals and radii come from.
 fn sources(estimated: &Estimated) -> String {
-    let list = |counts: &[(u64, &str)]| {
-        let some = counts.iter().filter(|(count, _)| *count > 0);
-        some.map(|(count, what)| format!("{} {what}", thousands(*count))).collect::<Vec<_>>().join(", ")
-    };
     let normals = list(&[
         (estimated.normals_given, "given"),
         (estimated.normals_from_faces, "from faces"),
@@ -241,17 +245,22 @@ fn sources(estimated: &Estimated) -> String {
     format!("{scanner}normals: {normals}\nradii: {radii}\n{lines}")
 }
 
-/// Describes the points that are left out.
-fn dropped(Dropped { position, transparent, thinned, filtered }: Dropped, estimated: &Estimated) -> String {
-    let Estimated { unused, outliers, .. } = *estimated;
+/// Describes the points that are left out, also by an estimation.
+fn dropped(
+    Dropped { position, transparent, thinned, filtered }: Dropped,
+    estimated: Option<&Estimated>,
+) -> String {
     let by = |count: u64, what: &str| {
         if count > 0 { format!(", {} {what}", thousands(count)) } else { String::new() }
     };
-    let [position, transparent, unused, outliers] = [position, transparent, unused, outliers].map(thousands);
+    let of_estimation = estimated.map_or(String::new(), |Estimated { unused, outliers, .. }| {
+        let [unused, outliers] = [*unused, *outliers].map(thousands);
+        format!(", {unused} that no face uses, {outliers} outliers")
+    });
+    let [position, transparent] = [position, transparent].map(thousands);
     let (thinned, filtered) = (by(thinned, "by thinning"), by(filtered, "by the filter"));
     format!(
-        "left out: {position} without a finite position, {transparent} less than a tenth opaque, {unused} that no face uses, {outliers} \
-         outliers{thinned}{filtered}\n"
+        "left out: {position} without a finite position, {transparent} less than a tenth opaque{of_estimation}{thinned}{filtered}\n"
     )
 }
 

@@ -6,7 +6,7 @@ const TWO: [&str; 2] = ["0.25 0 0 0 0 1 0.5", "0.75 0 0 0 1 0 0.25"];
 
 /// Output of `surfel info` for a file.
 fn info(program: &Program, name: &str) -> String {
-    program.run(&format!("info {name}")).text().to_owned()
+    program.run(&format!("info {name} --estimate")).text().to_owned()
 }
 
 #[test]
@@ -16,9 +16,13 @@ fn inputs_become_one_binary_file_that_renders_the_same() {
     let run = program.run("convert a.ply b.ply scene:bumpy-sphere?points=50 -o c.ply");
     assert_eq!((run.text(), run.err.as_str()), ("", "c.ply: 53 surfels\n"));
     let text = info(&program, "c.ply");
-    for part in
-        ["binary_little_endian", "element vertex: 53", "  float radius", "  uchar red", "skipped: none"]
-    {
+    for part in [
+        "binary_little_endian",
+        "element vertex: 53",
+        "  float radius",
+        "  uchar red",
+        "for --color-by: none",
+    ] {
         assert!(text.contains(part), "no `{part}` in\n{text}");
     }
     program.run("convert c.ply -o d.ply --quiet").text();
@@ -210,7 +214,7 @@ fn sharp_edges_are_found_and_written() {
     assert!(run.err.contains(" clipped at sharp edges\nc.ply: 5,000 surfels\n"), "{}", run.err);
     let text = info(&program, "c.ply");
     assert!(text.contains("\n  float clip0x\n") && text.contains("\n  uchar clip_concave\n"), "{text}");
-    assert!(text.contains("skipped: none"), "{text}");
+    assert!(text.contains("for --color-by: none"), "{text}");
     // Clip lines stay, with or without another search.
     program.run("convert c.ply -o d.ply").text();
     assert_eq!(program.run("convert c.ply -o e.ply --sharp 90").err, "e.ply: 5,000 surfels\n");

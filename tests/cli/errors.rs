@@ -21,7 +21,7 @@ fn unusable_inputs_exit_with_1_at_once() {
         let program = Program::new();
         program.write(name, contents);
         let start = Instant::now();
-        for arguments in [format!("render {name} -o out.png"), format!("info {name}")] {
+        for arguments in [format!("render {name} -o out.png"), format!("info {name} --estimate")] {
             let run = program.run(&arguments);
             let line = run.error(1);
             assert!(line.starts_with(&format!("{name}: ")) && line.contains(cause), "{arguments}: {line}");

@@ -90,7 +90,7 @@ fn scans_models_and_gaussians_become_pictures() {
         assert!(text.starts_with(start) && text.contains("faces: 2 understood"), "{text}");
     }
     program.run("convert a.splat -o b.ply").text();
-    assert!(program.run("info b.ply").text().contains("surfels: 441\n"));
+    assert!(program.run("info b.ply --estimate").text().contains("surfels: 441\n"));
 }
 
 #[test]
@@ -119,7 +119,7 @@ fn the_scanner_of_a_lidar_is_found_given_or_refused() {
     assert_eq!(covered("--scanner 0,0,0"), (found.0, false));
     let run = program.run(&format!("render a.xyz -o out.png {camera} --scanner there"));
     assert!(run.error(2).contains("give auto, file or X,Y,Z"), "{}", run.err);
-    let text = program.run("info a.xyz").text().to_owned();
+    let text = program.run("info a.xyz --estimate").text().to_owned();
     assert!(
         text.contains("scanner: 0,0,0, as the directions of 51,840 points from there are a grid"),
         "{text}"
@@ -199,7 +199,7 @@ fn columns_can_be_named() {
     let program = Program::new();
     program.write("a.txt", plane(|x, y| format!("{x} {y}")));
     let run = program.run("info a.txt --columns y,x,z,c,d");
-    assert!(run.text().contains("understood: y x z\nskipped: c d\n"), "{}", run.text());
+    assert!(run.text().contains("understood: y x z\nfor --color-by: c, d\n"), "{}", run.text());
     let wrong = program.run("info a.txt --columns x,y,z");
     assert!(wrong.error(1).contains("5 values, and 3 columns are named"), "{}", wrong.err);
     program.write("b.csv", "Tree,Foo,Bar,Baz\noak,1,2,3\nash,4,5,6\n");
@@ -228,7 +228,7 @@ fn classes_and_returns_can_be_selected() {
     assert!(run.err.contains("48 of 60 points left out by the filter"), "{}", run.err);
     run.text();
     assert!(render("--class 300").error(2).contains("300"));
-    let info = program.run(&format!("info {} --returns last", sample("format7.laz")));
+    let info = program.run(&format!("info {} --returns last --estimate", sample("format7.laz")));
     assert!(info.text().contains("outliers, 48 by the filter\n"), "{}", info.text());
 }
 
@@ -236,7 +236,7 @@ fn classes_and_returns_can_be_selected() {
 fn points_in_a_box_can_be_read() {
     let program = Program::new();
     program.write("a.txt", plane(|_, _| String::new()));
-    let info = |options: &str| program.run(&format!("info a.txt {options}"));
+    let info = |options: &str| program.run(&format!("info a.txt --estimate {options}"));
     for (bounds, surfels) in [("", 441), ("--bounds=0.1,-5,0.3,0.2", 39), ("--bounds 0.1,0,-1,0.3,0.2,1", 9)]
     {
         let run = info(bounds);
@@ -262,7 +262,7 @@ fn one_point_in_n_can_be_read() {
     for line in ["51 of 60 points left out: one in 7 is read", "7 of 60 points left out by the filter"] {
         assert!(rendered.err.contains(line), "{}", rendered.err);
     }
-    let info = run("info --every 7");
+    let info = run("info --estimate --every 7");
     assert!(info.text().contains("\nsurfels: 9\n"), "{}", info.text());
     assert!(info.text().contains("outliers, 51 by thinning\n"), "{}", info.text());
     assert!(info.text().contains("radii: 9 from neighbours\n"), "{}", info.text());

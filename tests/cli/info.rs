@@ -6,17 +6,18 @@ use crate::program::{Program, surfels};
 fn a_file_is_described() {
     let program = Program::new();
     program.write("a.ply", surfels(&["0 0 0 0 0 1 1", "4 0 0 0 0 1 3", "2 0 0 0 0 1 2", "0 nan 0 0 0 1 1"]));
-    let run = program.run("info a.ply");
+    let run = program.run("info a.ply --estimate");
     for line in [
         "a.ply: PLY, ascii",
         "element vertex: 4",
         "  float nx",
         "understood: x y z nx ny nz radius",
-        "skipped: none",
+        "for --color-by: none",
         "points: 4",
         "surfels: 3",
         // Those of the points, without their discs.
         "bounds: [0, 0, 0] to [4, 0, 0]",
+        "up: 0,1,0",
         "spacing: 2, the median distance to the nearest point",
         "radius: 1 to 3, median 2",
         "colours: none",
@@ -26,6 +27,52 @@ fn a_file_is_described() {
     ] {
         assert!(run.text().lines().any(|have| have == line), "no `{line}` in\n{}", run.text());
     }
+}
+
+#[test]
+fn nothing_is_estimated_unless_it_is_asked_for() {
+    let program = Program::new();
+    let file = surfels(&["0 0 0 0 0 1 2 0", "4 0 0 0 0 0 1 0", "2 0 0 0 0 1 0 0", "0 nan 0 0 0 1 1 0"]);
+    program.write(
+        "a.ply",
+        file.replace("property float radius", "property float radius\nproperty list uchar int l"),
+    );
+    let text = |options: &str| program.run(&format!("info a.ply {options}")).text().to_owned();
+    let given = text("");
+    assert!(
+        given.ends_with(
+            "understood: x y z nx ny nz radius\nfor --color-by: none\nskipped: l\nskipped elements: none\npoints: 4\nbounds: [0, 0, 0] \
+             to [4, 0, 0]\nup: 0,1,0\nradius: 1 to 2, median 2\ncolours: none\nnormals: 2 given, 1 to be estimated\nradii: 2 given, 1 to \
+             be estimated\nleft out: 1 without a finite position, 0 less than a tenth opaque\n"
+        ),
+        "{given}"
+    );
+    for options in ["--estimate", "--neighbours 6", "--radius 1"] {
+        assert!(text(options).contains("\nsurfels: 3\n"), "{options}: {}", text(options));
+    }
+}
+
+#[test]
+fn several_inputs_are_described_one_by_one() {
+    let program = Program::new();
+    let names: String = (1..=20).map(|i| format!(" p{i}")).collect();
+    let all: Vec<String> = (1..=20).map(|i| format!("p{i}")).collect();
+    program.write("a.ply", surfels(&["0 0 0 0 0 1 1"]));
+    program.write("b.xyz", format!("x y z{names}\n{}\n", "1 ".repeat(23)));
+    let run = program.run("info a.ply b.xyz scene:sphere?points=9");
+    let text = run.text();
+    let starts =
+        ["a.ply: PLY, ascii\n", "\nb.xyz: text, ascii\n", "\nscene:sphere?points=9: built-in scene\n"];
+    assert!(starts.iter().all(|start| text.contains(start)), "{text}");
+    assert!(text.contains(&format!("\nfor --color-by: {}\n", all.join(", "))), "{text}");
+    let run = program.run("info a.ply b.xyz --json");
+    let values: serde_json::Value = serde_json::from_str(run.text()).unwrap();
+    assert_eq!([&values[0]["input"], &values[1]["input"]], ["a.ply", "b.xyz"]);
+    assert_eq!(values[0]["given"], serde_json::json!({ "normals": 1, "billboards": 0, "radii": 1 }));
+    assert_eq!([&values[0]["surfels"], &values[0]["estimated"]], [&serde_json::Value::Null; 2]);
+    let run = program.run("info a.ply none.ply");
+    assert!(run.error(1).starts_with("none.ply: "), "{}", run.err);
+    assert!(String::from_utf8(run.out).unwrap().starts_with("a.ply: "));
 }
 
 #[test]
@@ -66,7 +113,7 @@ fn another_number_of_points_than_the_file_states_is_a_warning() {
 fn the_header_of_an_unusable_file_is_printed() {
     let program = Program::new();
     program.write("a.ply", surfels(&["0 0 0 0 0 1 1"]).replace("radius", "confidence"));
-    let run = program.run("info a.ply");
+    let run = program.run("info a.ply --estimate");
     assert!(run.error(1).contains("give a radius"), "{}", run.err);
     let text = String::from_utf8(run.out).unwrap();
     assert!(text.contains("element vertex: 1\n") && text.contains("  float confidence\n"), "{text}");
@@ -77,7 +124,7 @@ fn estimation_is_described() {
     let program = Program::new();
     let grid: Vec<String> = (0..49).map(|i| format!("{} {} 0 0 0 0 0", i % 7, i / 7)).collect();
     program.write("a.ply", surfels(&grid.iter().map(String::as_str).collect::<Vec<_>>()));
-    let run = program.run("info a.ply");
+    let run = program.run("info a.ply --estimate");
     for line in ["normals: 49 from neighbours, 49 two-sided", "radii: 49 from neighbours"] {
         assert!(run.text().lines().any(|have| have == line), "no `{line}` in\n{}", run.text());
     }
@@ -88,13 +135,13 @@ fn the_points_that_are_kept_are_described() {
     let program = Program::new();
     let grid: Vec<String> = (0..49).map(|i| format!("{} {} 0 0 0 1 1", i % 7, i / 7)).collect();
     program.write("a.ply", surfels(&grid.iter().map(String::as_str).collect::<Vec<_>>()));
-    let run = program.run("info a.ply --points 10");
+    let run = program.run("info a.ply --points 10 --estimate");
     let text = run.text();
     assert!(
         text.contains("points: 49\nsurfels: 10\n") && text.contains("radii: 10 from neighbours"),
         "{text}"
     );
-    let run = program.run("info a.ply --points 10 --json");
+    let run = program.run("info a.ply --points 10 --json --estimate");
     let value: serde_json::Value = serde_json::from_str(run.text()).unwrap();
     assert_eq!([&value["points"], &value["surfels"]], [49, 10]);
     let run = program.run("info scene:sphere --points 10");
@@ -126,7 +173,7 @@ fn edges_and_faces_are_described() {
 
 #[test]
 fn a_scene_is_described() {
-    let text = Program::new().run("info scene:bumpy-sphere?points=500").text().to_owned();
+    let text = Program::new().run("info scene:bumpy-sphere?points=500 --estimate").text().to_owned();
     assert!(text.contains("built-in scene\n") && text.contains("\nsurfels: 500\n"), "{text}");
     assert!(text.contains("\ncolours: sRGB, 8 bits\n"), "{text}");
 }

@@ -25,7 +25,7 @@ fn refused(program: &Program, arguments: &str) -> String {
 fn lines_are_described_counted_and_converted_exactly() {
     let program = Program::new();
     program.write("a.ply", hybrid());
-    let text = program.run("info a.ply").text().to_owned();
+    let text = program.run("info a.ply --estimate").text().to_owned();
     for part in [
         "lines: 2 understood, 1 skipped, 0 sides of faces\n",
         "surfels: 1\nribbons: 0\ntubes: 2\ndrawn triangles: 1\nvertices of these: 6, radius: 0 to 0.5, median 0.25\n",
@@ -48,7 +48,7 @@ fn lines_are_described_counted_and_converted_exactly() {
     assert!(bytes("b.ply") == bytes("c.ply"));
     // The file twice, and a scene.
     program.run("convert a.ply b.ply scene:sphere?points=50 -o d.ply --quiet").text();
-    let text = program.run("info d.ply").text().to_owned();
+    let text = program.run("info d.ply --estimate").text().to_owned();
     assert!(text.contains("surfels: 52\nribbons: 0\ntubes: 4\ndrawn triangles: 2\n"), "{text}");
 }
 
@@ -64,7 +64,7 @@ fn radii_of_lines_can_be_given() {
         run.err
     );
     let radius = |options: &str| {
-        let text = program.run(&format!("info a.ply {options}")).text().to_owned();
+        let text = program.run(&format!("info a.ply --estimate {options}")).text().to_owned();
         text.split_once("radius: ").unwrap().1.split(' ').next().unwrap().parse::<f32>().unwrap()
     };
     assert_eq!(radius(""), 0.0025);
@@ -81,7 +81,7 @@ fn polygons_renders_faces() {
          0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n"
     );
     program.write("a.ply", mesh);
-    assert!(program.run("info a.ply").text().contains("\nsurfels: 8\n"));
+    assert!(program.run("info a.ply --estimate").text().contains("\nsurfels: 8\n"));
     let text = program.run("info a.ply --polygons").text().to_owned();
     assert!(text.contains("surfels: 0\nribbons: 0\ntubes: 0\ndrawn triangles: 2\n"), "{text}");
     program.run("convert a.ply -o b.ply --polygons --color-by x").text();

@@ -44,7 +44,7 @@ fn the_table_of_needs_equals_the_documentation() {
 fn a_file_is_described_in_json() {
     let program = Program::new();
     program.write("a.ply", surfels(&["0 0 0 0 0 1 1", "4 0 0 0 0 1 3", "2 0 0 0 0 1 2", "0 nan 0 0 0 1 1"]));
-    let info = json(&program, "info a.ply --json");
+    let info = json(&program, "info a.ply --json --estimate");
     assert_eq!((&info["input"], &info["format"]), (&"a.ply".into(), &"ascii".into()));
     assert_eq!((&info["points"], &info["surfels"]), (&4.into(), &3.into()));
     assert_eq!(info["elements"][0]["properties"][3], serde_json::json!({ "name": "nx", "kind": "float" }));
@@ -52,11 +52,11 @@ fn a_file_is_described_in_json() {
     assert_eq!(info["radius"], serde_json::json!({ "min": 1.0, "max": 3.0, "median": 2.0 }));
     assert_eq!(info["estimated"]["normals"]["given"], 3);
     assert_eq!(info["left_out"]["without_position"], 1);
-    let scene = json(&program, "info scene:torus?points=500 --json");
+    let scene = json(&program, "info scene:torus?points=500 --json --estimate");
     assert_eq!((&scene["surfels"], &scene["elements"]), (&500.into(), &Value::Null));
 
     program.write("b.ply", surfels(&["0 0 0 0 0 1 1"]).replace("radius", "confidence"));
-    let run = program.run("info b.ply --json");
+    let run = program.run("info b.ply --json --estimate");
     assert!(run.error(1).contains("give a radius"), "{}", run.err);
     let printed: Value = serde_json::from_slice(&run.out).unwrap();
     assert_eq!(printed["elements"][0]["count"], 1);

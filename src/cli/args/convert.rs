@@ -76,12 +76,23 @@ impl Convert {
 /// Options of `surfel info`.
 #[derive(Args, Debug)]
 pub struct Info {
-    /// A PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, STL, SPLAT, SPZ or text file, or a built-in scene such as scene:bumpy-sphere
-    pub input: OsString,
+    /// PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, STL, SPLAT, SPZ or text files, or built-in scenes such as scene:bumpy-sphere, described one by one
+    #[arg(required = true, value_name = "INPUT")]
+    pub inputs: Vec<OsString>,
+    /// Estimates normals and radii, and prints where they come from; implied by the options of the estimation
+    #[arg(long)]
+    pub estimate: bool,
     /// How normals and radii are estimated
     #[command(flatten)]
     pub points: Points,
-    /// Prints JSON
+    /// Prints JSON: an object, or of several inputs an array
     #[arg(long)]
     pub json: bool,
+}
+
+impl Info {
+    /// Whether normals and radii are estimated.
+    pub fn estimates(&self) -> bool {
+        self.estimate || self.points.polygons || self.points.estimate() != Estimate::default()
+    }
 }

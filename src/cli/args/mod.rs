@@ -51,7 +51,7 @@ pub enum Command {
     /// Opens a window that shows points interactively
     #[cfg(feature = "viewer")]
     View(Box<View>),
-    /// Prints the contents of a file or scene, and what is estimated of it
+    /// Prints the contents of files and scenes, and what of them has to be estimated
     Info(Box<Info>),
     /// Estimates surfels from points, and writes them, or the points alone, to a file
     Convert(Box<Convert>),

@@ -1,51 +1,60 @@
 //! `surfel info --json`.
 
-use super::{bounds, counts};
+use super::counts;
+use super::input::{Given, Input};
 use crate::cli::args::Info;
 use crate::cli::files::print_json;
 use crate::cli::{progress, report};
 use serde_json::{Map, Value, json};
+use std::ffi::OsStr;
 use std::path::Path;
 use surfel::Result;
 use surfel::estimate::{Estimated, spacing};
 use surfel::formats::declared::Element;
-use surfel::formats::{self, Dropped, Inspected, Loaded, Report};
+use surfel::formats::{self, Dropped, Inspected, Report};
 use surfel::geometry::{Cloud, Colours, Model, View};
-use surfel::load::{scene, scene_cloud};
+use surfel::load::scene;
 
 /// The entries of a JSON object.
 type Object = Map<String, Value>;
 
-/// Prints the contents of a file or scene as JSON. If its points cannot be rendered, prints what the header declares and fails with the cause.
+/// Prints the contents of a file or scene as a JSON object, and those of several as an array. If the points of one cannot be used, prints what
+/// its header declares and fails with the cause.
 pub(super) fn run(args: &Info) -> Result<()> {
-    let mut all = Object::new();
-    all.insert("input".into(), args.input.to_string_lossy().into());
-    let found = match scene(&args.input) {
-        Some(name) => scene_cloud(name).and_then(|cloud| {
-            let points = cloud.len() as u64;
-            model(&mut all, args, (name, points), cloud)
-        }),
-        None => file(&mut all, args),
-    };
-    // An input that cannot be opened has no further entries.
-    if all.len() > 1 {
-        print_json(&Value::Object(all))?;
+    let mut objects = Vec::new();
+    let found = args.inputs.iter().try_for_each(|input| {
+        let mut object = Object::new();
+        object.insert("input".into(), input.to_string_lossy().into());
+        let found = describe(&mut object, input, args);
+        // An input that cannot be opened has no further entries.
+        if object.len() > 1 {
+            objects.push(Value::Object(object));
+        }
+        found
+    });
+    match &objects[..] {
+        [] => {}
+        [object] if args.inputs.len() == 1 => print_json(object)?,
+        _ => print_json(&Value::Array(objects))?,
     }
     found
 }
 
-/// Adds the entries of a file.
-fn file(all: &mut Object, args: &Info) -> Result<()> {
-    let path = Path::new(&args.input);
+/// Adds the entries of an input.
+fn describe(all: &mut Object, input: &OsStr, args: &Info) -> Result<()> {
+    if let Some(name) = scene(input) {
+        return points(all, Input::of_scene(name)?, args);
+    }
+    let path = Path::new(input);
     let Inspected { encoding, elements, loaded, .. } =
         formats::inspect(path, &super::read_options(args), &*progress::bars(false))?;
     all.insert("format".into(), encoding.to_string().into());
     all.insert("elements".into(), elements.iter().map(element).collect());
-    let Loaded { cloud, report, attributes } = loaded?;
-    read(all, &report, &cloud);
-    all.insert("points_by_class".into(), json!(counts::of_classes(&attributes)));
-    all.insert("points_by_return".into(), json!(counts::of_returns(&attributes)));
-    model(all, args, (&path.display().to_string(), report.points), super::kept(cloud, args))
+    let loaded = loaded?;
+    read(all, &loaded.report, &loaded.cloud);
+    all.insert("points_by_class".into(), json!(counts::of_classes(&loaded.attributes)));
+    all.insert("points_by_return".into(), json!(counts::of_returns(&loaded.attributes)));
+    points(all, Input::of_file(path, loaded, args), args)
 }
 
 /// An element of the header.
@@ -84,35 +93,44 @@ fn read(all: &mut Object, report: &Report, cloud: &Cloud) {
     all.extend(read);
 }
 
-/// Adds the entries of the model of `points` points.
-fn model(all: &mut Object, args: &Info, (name, points): (&str, u64), cloud: Cloud) -> Result<()> {
-    let polygons = args.points.polygons || scene(&args.input).is_some();
-    let bounds = bounds::of(&cloud);
-    let made = cloud.into_model(polygons, &args.points.estimate(), &*progress::bars(false));
-    let (model, estimated) = made.map_err(|error| error.in_input(name))?;
-    let Model { surfels, primitives } = &model;
-    let colours = match surfels.colours.as_ref().or(primitives.colours.as_ref()) {
+/// Adds the entries of the points, and of the model if it is to be estimated; those of an estimation are null otherwise.
+fn points(all: &mut Object, input: Input, args: &Info) -> Result<()> {
+    let Given { normals, billboards, radii } = input.given();
+    all.insert("points".into(), input.points.into());
+    let bounds = input.bounds.map(|[min, max]| json!({ "min": min.to_array(), "max": max.to_array() }));
+    all.insert("bounds".into(), json!(bounds));
+    all.insert("up".into(), json!(input.up.to_array()));
+    let given = json!({ "normals": normals, "billboards": billboards, "radii": radii });
+    all.insert("given".into(), given);
+    all.insert("radius".into(), range(&input.given_radii()));
+    all.insert("colours".into(), colours(input.cloud.colours.as_ref()));
+    let made = input.model(args)?;
+    let surfels = made.as_ref().map(|(model, _)| &model.surfels);
+    let primitives = made.as_ref().map(|(model, _)| &model.primitives);
+    let entries = [
+        ("surfels", json!(surfels.map(|surfels| surfels.len()))),
+        ("ribbons", json!(primitives.map(|lines| lines.ribbons.len()))),
+        ("tubes", json!(primitives.map(|lines| lines.tubes.len()))),
+        ("triangles", json!(primitives.map(|lines| lines.triangles.len()))),
+        ("spacing", json!(surfels.map(|surfels| spacing(&surfels.positions)))),
+        ("radius_of_lines", primitives.map_or(Value::Null, |lines| range(&lines.radii))),
+        ("estimated", made.as_ref().map_or(Value::Null, |(_, estimated)| sources(estimated))),
+    ];
+    all.extend(entries.map(|(key, value)| (key.into(), value)));
+    if let Some((Model { surfels, primitives }, _)) = &made {
+        all.insert("radius".into(), range(&surfels.radii));
+        all.insert("colours".into(), colours(surfels.colours.as_ref().or(primitives.colours.as_ref())));
+    }
+    Ok(())
+}
+
+/// The type of colours; null without any.
+fn colours(colours: Option<&Colours>) -> Value {
+    match colours {
         None => Value::Null,
         Some(Colours::Srgb8(_)) => "srgb8".into(),
         Some(Colours::Linear(_)) => "linear".into(),
-    };
-    let Value::Object(model) = json!({
-        "points": points,
-        "surfels": surfels.len(),
-        "ribbons": primitives.ribbons.len(),
-        "tubes": primitives.tubes.len(),
-        "triangles": primitives.triangles.len(),
-        "bounds": bounds.map(|[min, max]| json!({ "min": min.to_array(), "max": max.to_array() })),
-        "spacing": spacing(&surfels.positions),
-        "radius": range(&surfels.radii),
-        "radius_of_lines": range(&primitives.radii),
-        "colours": colours,
-        "estimated": sources(&estimated),
-    }) else {
-        return Ok(());
-    };
-    all.extend(model);
-    Ok(())
+    }
 }
 
 /// Minimum, maximum and median of radii; null if there are none.
