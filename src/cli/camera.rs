@@ -59,23 +59,24 @@ pub fn read(args: &args::Camera) -> Result<Option<(&Path, Pose)>> {
     args.file.as_deref().map(|path| Ok((path, camera_file::read(path)?))).transpose()
 }
 
-/// The camera of `file`, or else of the arguments, which by default frames `extent` with `up` upwards.
+/// The camera of `file`, or else of the arguments, which by default frames `extent` with `up` upwards; with its pose.
 pub fn make(
     args: &args::Camera,
     file: Option<(&Path, Pose)>,
     extent: &Extent,
     up: DVec3,
     room: Room,
-) -> Result<Camera> {
+) -> Result<(Pose, Camera)> {
     let size = room.size;
     let pose = pose(args, file.map(|(_, pose)| pose), extent, up, room)?;
     let camera = pose.camera(&extent.bounds(), aspect(size));
-    match file {
+    let camera = match file {
         Some((path, _)) => {
             camera.map_err(|error| Error::input(path.display().to_string(), error.to_string()))
         }
         None => camera,
-    }
+    };
+    Ok((pose, camera?))
 }
 
 /// The pose of that camera, without near and far planes.
@@ -124,7 +125,7 @@ mod tests {
         };
         let surfels = bumpy_sphere::sample(2000, 1);
         let extent = Extent::of(&surfels).unwrap();
-        let camera = make(&args.camera, None, &extent, DVec3::Y, room).unwrap();
+        let (_, camera) = make(&args.camera, None, &extent, DVec3::Y, room).unwrap();
         let columns = surfels.positions.iter().map(|p| {
             let clip = camera.world_to_clip() * p.as_dvec3().extend(1.0);
             (0.5 + 0.5 * clip.x / clip.w) * f64::from(room.size[0])

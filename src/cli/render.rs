@@ -8,10 +8,11 @@ use super::{files, progress, reference, summary, turntable, vulkan};
 use std::path::Path;
 use surfel::embed::Measured;
 use surfel::estimate::Estimate;
+use surfel::formats::camera as camera_file;
 use surfel::formats::colour_bar::{ColourBar, write_with};
 use surfel::formats::image::Output;
 use surfel::frame::times::Times;
-use surfel::geometry::{Camera, Extent, Levels, Model, Parts, SurfelFormat};
+use surfel::geometry::{Camera, Extent, Levels, Model, Parts, Pose, SurfelFormat};
 use surfel::load::{Coloured, Colouring, LoadOptions, SuggestedShading, Uncoloured, load};
 use surfel::settings::methods::{Method, pull_push};
 use surfel::settings::{Hierarchy, Shading};
@@ -27,6 +28,8 @@ pub struct Task<'a> {
     pub method: Method,
     /// The camera.
     pub camera: Camera,
+    /// Its pose.
+    pub pose: Pose,
     /// The render settings.
     pub settings: Settings,
     /// Width and height, px.
@@ -111,7 +114,7 @@ pub fn run(args: &Render) -> Result<()> {
     let framed = args.turntable.map(|_| extent.turned_about(middle, up));
     let bar = colour_bar(args, loaded.coloured.as_ref(), settings.shading, &out)?;
     let room = Room { size: args.size, bar: bar.as_ref().map_or(0, |bar| bar.width(args.size)) };
-    let camera = camera::make(&args.camera, file, framed.as_ref().unwrap_or(&extent), up, room)?;
+    let (pose, camera) = camera::make(&args.camera, file, framed.as_ref().unwrap_or(&extent), up, room)?;
     if let Some(note) =
         summary::culled_backs(&loaded.model.surfels, &camera, &settings).filter(|_| !args.quiet)
     {
@@ -129,7 +132,7 @@ pub fn run(args: &Render) -> Result<()> {
     let (layers, size, frames, progress) = (args.outputs(), args.size, args.frames, &*bars);
     let split = args.times == Some(PassTimes::Split);
     let cut = cut.as_ref();
-    let task = Task { scene, cut, method, camera, settings, size, layers, frames, split, progress };
+    let task = Task { scene, cut, method, camera, pose, settings, size, layers, frames, split, progress };
     let counts = args.json.is_some();
     let wanted = Measured { times: counts || args.times.is_some(), counts };
     let mut outcome = if args.backend.reference {
@@ -156,6 +159,9 @@ pub fn run(args: &Render) -> Result<()> {
         } else {
             vulkan::turn(&task, &device, &args.backend, others, save)?;
         }
+    }
+    if let Some(output) = &args.save_camera {
+        files::write_text(output, &camera_file::text(&pose))?;
     }
     if let Some(output) = &args.json {
         files::write_text(output, &Report::new(args, &loaded, &task, &outcome)?.to_json()?)?;
@@ -279,15 +285,20 @@ fn print_summary(args: &Render, contents: &str, outcome: &Outcome) {
     }
 }
 
-/// Checks that the outputs can be written, and that the report overwrites neither the picture nor an input.
+/// Checks that the outputs can be written, and that report and camera overwrite no other file.
 fn check_outputs(args: &Render, out: &Output) -> Result<()> {
     out.check()?;
     if out.is_png() && !args.layers.is_empty() {
         return Err(Error::Usage("--layers are written to EXR alone: name the picture .exr".into()));
     }
-    let Some(json) = &args.json else { return Ok(()) };
-    files::check(json)?;
-    files::check_distinct("--json", json, std::iter::once(&args.output).chain(&args.inputs))
+    let given = || std::iter::once(&args.output).chain(&args.inputs);
+    if let Some(json) = &args.json {
+        files::check(json)?;
+        files::check_distinct("--json", json, given())?;
+    }
+    let Some(camera) = &args.save_camera else { return Ok(()) };
+    files::check(camera)?;
+    files::check_distinct("--save-camera", camera, given().chain(&args.json))
 }
 
 /// The scene, with its levels of detail if there are any.

@@ -6,6 +6,7 @@ use serde_json::{Map, Value, json};
 use std::path::Path;
 use surfel::estimate::Estimated;
 use surfel::formats::Dropped;
+use surfel::formats::camera::Fields;
 use surfel::frame::times::Statistics;
 use surfel::load::{Coloured, LoadedModel};
 use surfel::settings::splatting::Splatting;
@@ -163,11 +164,11 @@ fn light(lighting: &Lighting) -> Value {
     })
 }
 
-/// The matrices of the camera, by columns.
+/// The pose of the camera, as in a camera file, and its matrices, by columns.
 fn camera(task: &Task<'_>) -> Value {
     let camera = &task.camera;
     let [view, projection] = [camera.view, camera.projection].map(|matrix| matrix.to_cols_array_2d());
-    json!({ "view": view, "projection": projection, "reversed": camera.reversed })
+    json!({ "pose": Fields::from(task.pose), "view": view, "projection": projection, "reversed": camera.reversed })
 }
 
 fn pass((name, ms): (&'static str, Statistics)) -> Value {

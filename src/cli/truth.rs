@@ -29,7 +29,7 @@ pub fn run(args: &Truth) -> Result<()> {
     let file = camera::read(&args.camera)?;
     let bars = progress::bars(args.quiet);
     let (extent, up) = extent(args, camera::up(&args.camera, file), &*bars)?;
-    let camera = camera::make(&args.camera, file, &extent, up, camera::Room::whole(args.size))?;
+    let (_, camera) = camera::make(&args.camera, file, &extent, up, camera::Room::whole(args.size))?;
     let mut truth = match scene(&args.input) {
         Some(name) => trace(args, name, &*scenes::surface(name)?, &camera, &*bars)?,
         None => {

@@ -1,4 +1,4 @@
-//! Camera files: read by `--camera`, written by the window.
+//! Camera files: read by `--camera`, written by `--save-camera` and the window.
 //!
 //! ```json
 //! {"eye": [0, 0, 3], "target": [0, 0, 0], "up": [0, 1, 0], "fov_y_deg": 45}
@@ -61,7 +61,6 @@ pub fn parse(text: &[u8]) -> Result<Pose> {
 }
 
 /// Contents of a file, one line per field.
-#[cfg(any(feature = "viewer", test))]
 pub fn text(pose: &Pose) -> String {
     let fields = Fields::from(*pose);
     let line = |name: &str, value: String| format!("\"{name}\": {value}");

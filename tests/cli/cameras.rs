@@ -1,6 +1,7 @@
 //! Cameras from arguments and from files, tested with the reference, which needs no device.
 
 use crate::program::{Program, surfels};
+use serde_json::Value;
 
 /// Whether each of these columns of the middle row is covered.
 fn seen(program: &Program, columns: [u32; 4]) -> [bool; 4] {
@@ -24,4 +25,33 @@ fn parallel_projection_shows_distant_points_as_large_as_near_ones() {
     assert!(!seen(&program, [10, 18, 20, 30])[0]);
     let run = program.run(&format!("{common} --eye 0,0,5 --target 0,0,0 --parallel -1"));
     assert!(run.error(2).contains("height of the picture is -1"), "{}", run.err);
+}
+
+#[test]
+fn the_automatic_camera_can_be_saved() {
+    let program = Program::new();
+    program.write("a.ply", surfels(&["-1 0.3 7 0 0 1 0.2", "1 0.1 2 0.6 0 0.8 0.7", "0 3 2 0 0 1 0.2"]));
+    for (options, span) in
+        [("", "fov_y_deg"), ("--parallel 9 --up 1,2,0.3", "height"), ("--fov 30", "fov_y_deg")]
+    {
+        let picture = |name: &str, options: &str| {
+            program.run(&format!("render a.ply -o {name} --reference --size 32x24 {options}")).text();
+            std::fs::read(program.path(name)).unwrap()
+        };
+        let first = picture("a.exr", &format!("{options} --save-camera camera.json --json a.json"));
+        let again = picture("b.exr", "--camera camera.json --json b.json");
+        assert!(first == again, "{options}");
+        let json = |name: &str| -> Value {
+            serde_json::from_slice(&std::fs::read(program.path(name)).unwrap()).unwrap()
+        };
+        let (report, saved) = (json("a.json"), json("camera.json"));
+        assert!(saved["eye"].is_array() && saved[span].is_number(), "{saved}");
+        assert_eq!([&report["camera"]["pose"], &json("b.json")["camera"]["pose"]], [&saved; 2]);
+    }
+    let printed = program.run("render a.ply -o a.png --reference --size 8x8 --save-camera -");
+    assert!(printed.text().starts_with("{\n  \"eye\": ["), "{}", printed.text());
+    for same in ["a.ply", "a.png", "r.json"] {
+        let run = program.run(&format!("render a.ply -o a.png --json r.json --save-camera {same}"));
+        assert!(run.error(2).contains("--save-camera would overwrite"), "{}", run.err);
+    }
 }

@@ -168,6 +168,9 @@ pub struct Render {
     /// The camera
     #[command(flatten, next_help_heading = "Camera")]
     pub camera: Camera,
+    /// Writes the camera of the picture, the first one of a turntable, to a file for --camera; `-` for standard output
+    #[arg(long, value_name = "FILE.json")]
+    pub save_camera: Option<OsString>,
     /// The render settings
     #[command(flatten, next_help_heading = "Picture")]
     pub render_settings: RenderSettings,
