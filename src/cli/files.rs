@@ -33,6 +33,11 @@ pub fn check_distinct<'a>(
     mut others: impl Iterator<Item = &'a OsString>,
 ) -> Result<()> {
     let Some(other) = others.find(|other| is_same(other, output)) else { return Ok(()) };
+    if output == "-" {
+        return Err(Error::Usage(format!(
+            "{option} and another output both go to standard output: name a file for one"
+        )));
+    }
     let other = Path::new(other).display();
     Err(Error::Usage(format!(
         "{option} would overwrite {other}, which is another file of this command: name another"

@@ -2,9 +2,13 @@
 
 use clap::ValueEnum;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::error::{ContextKind, ContextValue};
 use glam::DVec3;
+use std::ffi::OsStr;
+use std::ops::RangeInclusive;
 use std::str::FromStr;
 use surfel::estimate::Scanner;
+use surfel::formats::class_name;
 use surfel::geometry::ValueRange;
 use surfel::geometry::srgb;
 use surfel::settings::methods::Method;
@@ -58,6 +62,39 @@ pub fn scanner(text: &str) -> Result<Scanner, String> {
 /// Parses a vector that is not 0; returns the unit vector.
 pub fn direction(text: &str) -> Result<DVec3, String> {
     vector(text)?.try_normalize().ok_or_else(|| "give a direction that is not 0,0,0".into())
+}
+
+/// Parses a number.
+pub fn number<T: FromStr>(text: &str) -> Result<T, String> {
+    text.trim().parse().map_err(|_| "give a number, for example 0.5".into())
+}
+
+/// Parses a whole number in a range.
+pub fn whole<T: TryFrom<u64>>(
+    range: RangeInclusive<u64>,
+) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync {
+    move |text: &str| {
+        let number = text.trim().parse().ok().filter(|number| range.contains(number));
+        number.and_then(|number| number.try_into().ok()).ok_or_else(|| match (range.start(), range.end()) {
+            (1, end) if *end >= u32::MAX.into() => "give a whole number above 0".into(),
+            (start, end) => format!("give a whole number from {start} to {end}"),
+        })
+    }
+}
+
+/// Parses a class by its number or by its name, in which `-` may stand for a space.
+pub fn class(text: &str) -> Result<u8, String> {
+    let name = text.trim().to_lowercase().replace(['-', '_'], " ");
+    let named: Vec<u8> =
+        (0..=u8::MAX).filter(|class| class_name((*class).into()) == Some(name.as_str())).collect();
+    match (name.parse(), &named[..]) {
+        (Ok(class), _) => Ok(class),
+        (Err(_), &[class]) => Ok(class),
+        _ => Err(
+            "give numbers up to 255 such as 2,6, or names such as ground: `surfel info` lists the classes"
+                .into(),
+        ),
+    }
 }
 
 /// Parses a finite number above 0.
@@ -153,7 +190,36 @@ pub fn opaque(text: &str) -> Result<[f32; 3], String> {
 /// Parses a method by its name.
 pub fn method() -> impl TypedValueParser<Value = Method> {
     let presets = Method::CHOICES.map(|method| PossibleValue::new(method.name).help(method.paper));
-    PossibleValuesParser::new(presets).map(|name| Method::named(&name).unwrap_or(Method::ALL[0]))
+    MethodParser(PossibleValuesParser::new(presets))
+}
+
+/// A parser of methods by name, which suggests the first one that has a wrong name in its own.
+#[derive(Clone)]
+struct MethodParser(PossibleValuesParser);
+
+impl TypedValueParser for MethodParser {
+    type Value = Method;
+
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        option: Option<&clap::Arg>,
+        text: &OsStr,
+    ) -> Result<Method, clap::Error> {
+        let name = self.0.parse_ref(command, option, text).map_err(|mut error| {
+            let part = text.to_string_lossy();
+            let meant = Method::CHOICES.into_iter().find(|method| method.name.contains(&*part));
+            if let Some(method) = meant.filter(|_| !part.is_empty()) {
+                error.insert(ContextKind::SuggestedValue, ContextValue::String(method.name.into()));
+            }
+            error
+        })?;
+        Ok(Method::named(&name).unwrap_or(Method::ALL[0]))
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        self.0.possible_values()
+    }
 }
 
 /// Parses one of all choices by its name.
@@ -237,6 +303,19 @@ mod tests {
         for text in ["0", "-1", "nan", "inf", "1e39", "", "x"] {
             assert!(positive::<f32>(text).is_err(), "{text}");
         }
+        assert_eq!(
+            [class("2"), class("Ground"), class("low-vegetation"), class("255")],
+            [2, 2, 3, 255].map(Ok)
+        );
+        for text in ["", "reserved", "256", "-1", "grond"] {
+            assert!(class(text).unwrap_err().contains("`surfel info` lists the classes"), "{text}");
+        }
+        let above = |text: &str, most| whole::<u32>(1..=most)(text).unwrap_err();
+        assert_eq!([whole(1..=5)("5"), whole(1..=u64::MAX)("7")], [Ok(5), Ok(7u8)]);
+        assert_eq!(above("0", u64::MAX), "give a whole number above 0");
+        assert_eq!(above("1.5", 5), "give a whole number from 1 to 5");
+        assert_eq!(above("5000000000", u64::MAX), "give a whole number above 0");
+        assert_eq!((number("-0.5"), number::<f32>("x").is_err()), (Ok(-0.5), true));
         assert_eq!(direction("0,0,-5"), Ok(DVec3::NEG_Z));
         assert!(direction("0,0,0").is_err());
         let by = |name: &str, range| Ok(ColourBy { name: name.into(), range });

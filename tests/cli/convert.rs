@@ -277,8 +277,8 @@ fn wrong_options_exit_with_2_before_anything_is_read() {
             ("--radius -1", "above 0"),
             ("--radius nan", "above 0"),
             ("--radius-scale inf", "above 0"),
-            ("--neighbours 5", "6..=64"),
-            ("--neighbours 65", "6..=64"),
+            ("--neighbours 5", "6 to 64"),
+            ("--neighbours 65", "6 to 64"),
             ("--drop-outliers 0", "above 0"),
         ] {
             let run = program.run(&format!("{command} {arguments}"));

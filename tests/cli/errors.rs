@@ -56,6 +56,14 @@ fn wrong_arguments_exit_with_2_before_anything_is_read() {
         ("--eye nan,0,0", "nan,0,0"),
         ("--shading shiny", "possible values: lit, color, normal, depth"),
         ("--method ray-tracing", "perspective-ewa"),
+        ("--method ewa", "a similar value exists: 'perspective-ewa';"),
+        ("--method pull", "a similar value exists: 'pull-push';"),
+        ("--lod fine", "give a number, for example 0.5"),
+        ("--every 0", "give a whole number above 0"),
+        (
+            "--class grond",
+            "give numbers up to 255 such as 2,6, or names such as ground: `surfel info` lists the classes",
+        ),
         ("--background 0,0,256", "0 to 255"),
         ("--alpha half", "possible values: mask, coverage"),
         ("--widen none", "possible values: all, small"),
@@ -116,7 +124,8 @@ fn outputs_that_cannot_be_written_are_refused_before_anything_is_read() {
         let run = program.run(&format!("render a.ply -o out.png --json {json}"));
         assert!(run.error(2).contains("would overwrite"), "{}", run.err);
     }
-    assert!(program.run("render a.ply -o - --json -").error(2).contains("would overwrite"));
+    let run = program.run("render a.ply -o - --json -");
+    assert!(run.error(2).contains("both go to standard output: name a file for one"), "{}", run.err);
     assert_eq!(program.files(), ["a.ply"]);
 }
 

@@ -222,7 +222,7 @@ fn classes_and_returns_can_be_selected() {
         program
             .run(&format!("render {} -o out.png --reference --size 16x16 {options}", sample("format7.laz")))
     };
-    let run = render("--class 2,6 --returns last");
+    let run = render("--class ground,building --returns last");
     assert!(run.err.contains("59 of 60 points left out by the filter"), "{}", run.err);
     let run = render("--returns first");
     assert!(run.err.contains("48 of 60 points left out by the filter"), "{}", run.err);

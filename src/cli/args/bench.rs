@@ -1,7 +1,7 @@
 //! Options of `surfel bench`.
 
 use super::DeviceArgs;
-use crate::cli::values::{method, one_of, positive, size};
+use crate::cli::values::{method, one_of, positive, size, whole};
 use clap::Args;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -19,7 +19,7 @@ pub struct Bench {
     #[arg(long, value_name = "MESH", requires = "inputs")]
     pub truth: Option<PathBuf>,
     /// Numbers of points of INPUT [default: from 10000 to 1000000, at most all]
-    #[arg(long, value_name = "N,…", value_delimiter = ',', requires = "inputs", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N,…", value_delimiter = ',', requires = "inputs", value_parser = whole::<u64>(1..=u64::MAX))]
     pub points: Vec<u64>,
     /// Methods that render INPUT [default: all but those as published]
     #[arg(long, value_name = "METHOD,…", value_delimiter = ',', requires = "inputs", value_parser = method())]

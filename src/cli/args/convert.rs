@@ -1,7 +1,7 @@
 //! Options of `surfel convert` and `surfel info`.
 
 use super::{Colours, DeviceArgs, Points};
-use crate::cli::values::{direction, edge, positive};
+use crate::cli::values::{direction, edge, positive, whole};
 use clap::Args;
 use glam::DVec3;
 use std::ffi::OsString;
@@ -39,7 +39,7 @@ pub struct Convert {
     #[arg(long, value_name = "ANGLE", value_parser = edge, allow_hyphen_values = true)]
     pub sharp: Option<f32>,
     /// Captures normalization weights from VIEWS directions, for --normalization surfel [default: 24]
-    #[arg(long, value_name = "VIEWS", num_args = 0..=1, default_missing_value = "24", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, value_name = "VIEWS", num_args = 0..=1, default_missing_value = "24", value_parser = whole::<u32>(1..=10_000))]
     pub weights: Option<u32>,
     /// The device that captures weights
     #[command(flatten)]

@@ -22,7 +22,9 @@ pub use truth::Truth;
 #[cfg(feature = "viewer")]
 pub use view::View;
 
-use super::values::{Background, Layer, background, choice, kernel, method, pixel_filter, size, vector};
+use super::values::{
+    Background, Layer, background, choice, kernel, method, number, pixel_filter, size, vector, whole,
+};
 use clap::builder::ArgPredicate;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
@@ -133,7 +135,7 @@ pub struct Render {
     #[arg(short, long, value_name = "OUT")]
     pub output: OsString,
     /// Renders N pictures on a full turn about the scene's up axis; OUT is a pattern such as frames/%04d.png
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "N", value_parser = whole::<u32>(1..=100_000))]
     pub turntable: Option<u32>,
     /// The method [default: perspective-ewa; pull-push for lines or triangles]; see `surfel methods`
     #[arg(long, value_parser = method())]
@@ -169,7 +171,7 @@ pub struct Render {
     #[command(flatten, next_help_heading = "Camera")]
     pub camera: Camera,
     /// Writes the camera of the picture, the first one of a turntable, to a file for --camera; `-` for standard output
-    #[arg(long, value_name = "FILE.json")]
+    #[arg(long, value_name = "FILE.json", help_heading = "Camera")]
     pub save_camera: Option<OsString>,
     /// The render settings
     #[command(flatten, next_help_heading = "Picture")]
@@ -184,7 +186,7 @@ pub struct Render {
     #[arg(long, value_enum, value_name = "PASSES", num_args = 0..=1, require_equals = true, default_missing_value = "passes")]
     pub times: Option<PassTimes>,
     /// Renders N frames; the times exclude the first one unless it is the only one
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u32>(1..=u32::MAX.into()))]
     pub frames: u32,
     /// Prints nothing but warnings and errors
     #[arg(short, long)]
@@ -245,10 +247,10 @@ pub struct Camera {
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub up: Option<DVec3>,
     /// Vertical angle of view, degrees [default: 45]
-    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEG", value_parser = number::<f64>, allow_hyphen_values = true)]
     pub fov: Option<f64>,
     /// Parallel projection: height of the picture, in the positions' unit
-    #[arg(long, value_name = "HEIGHT", conflicts_with = "fov", allow_hyphen_values = true)]
+    #[arg(long, value_name = "HEIGHT", value_parser = number::<f64>, conflicts_with = "fov", allow_hyphen_values = true)]
     pub parallel: Option<f64>,
     /// Reads the camera from a JSON file
     ///
@@ -264,10 +266,10 @@ pub struct RenderSettings {
     #[arg(long, value_parser = choice::<Shading>(), default_value_if("edl", ArgPredicate::IsPresent, Shading::Edl.name()))]
     pub shading: Option<Shading>,
     /// Strength of --shading edl, which it implies: how much pixels behind their neighbours are darkened
-    #[arg(long, value_name = "STRENGTH", default_value_t = Settings::DEFAULT_EDL, allow_hyphen_values = true)]
+    #[arg(long, value_name = "STRENGTH", value_parser = number::<f32>, default_value_t = Settings::DEFAULT_EDL, allow_hyphen_values = true)]
     pub edl: f32,
     /// Ambient occlusion: darkens cavities and creases, where little light from around arrives, with this strength, 1 if none is given [default: 0; 1 if many points without colours are on no surface]
-    #[arg(long, value_name = "STRENGTH", num_args = 0..=1, require_equals = true, default_missing_value = "1")]
+    #[arg(long, value_name = "STRENGTH", value_parser = number::<f32>, num_args = 0..=1, require_equals = true, default_missing_value = "1")]
     pub ao: Option<f32>,
     /// Meaning of α [default: the method's]
     #[arg(long, value_parser = choice::<Alpha>())]
@@ -279,7 +281,7 @@ pub struct RenderSettings {
     #[arg(long, value_name = "R,G,B|COLOR|transparent", default_value = "transparent", value_parser = background, allow_hyphen_values = true)]
     pub background: Background,
     /// Variance of the anti-aliasing filter, px² [default: the method's, mostly 1]
-    #[arg(long, value_name = "VARIANCE_PX2", allow_hyphen_values = true)]
+    #[arg(long, value_name = "VARIANCE_PX2", value_parser = number::<f32>, allow_hyphen_values = true)]
     pub lowpass: Option<f32>,
     /// Filter of pixels after shading, with its part of the anti-aliasing filter's variance: gaussian:VARIANCE_PX2, or none [default: the method's]
     #[arg(long, value_name = "none|gaussian[:VARIANCE_PX2]", value_parser = pixel_filter)]
@@ -288,25 +290,25 @@ pub struct RenderSettings {
     #[arg(long, value_parser = choice::<Widen>())]
     pub widen: Option<Widen>,
     /// Where a splat's kernel ends, in standard deviations [default: the method's; perspective-ewa: 3.5]
-    #[arg(long, value_name = "F", allow_hyphen_values = true)]
+    #[arg(long, value_name = "F", value_parser = number::<f32>, allow_hyphen_values = true)]
     pub cutoff: Option<f32>,
     /// How far behind the nearest splat others are still blended with it, in radii
-    #[arg(long, value_name = "RADII", default_value_t = Settings::default().epsilon, allow_hyphen_values = true)]
+    #[arg(long, value_name = "RADII", value_parser = number::<f32>, default_value_t = Settings::default().epsilon, allow_hyphen_values = true)]
     pub epsilon: f32,
     /// Which surfels are culled by their orientation [default: the method's]
     #[arg(long, value_parser = choice::<Cull>())]
     pub cull: Option<Cull>,
     /// Shows every point as a circle of this diameter, px, by method points, which estimates neither normals nor radii [default of that method: 2]
-    #[arg(long, value_name = "PX", allow_hyphen_values = true)]
+    #[arg(long, value_name = "PX", value_parser = number::<f32>, allow_hyphen_values = true)]
     pub point_size: Option<f32>,
     /// Level of detail, px: surfels that stand for all points of a cell are drawn where its side is at most this; 0 draws all points
-    #[arg(long, value_name = "PX", default_value_t = 0.0, allow_hyphen_values = true)]
+    #[arg(long, value_name = "PX", value_parser = number::<f32>, default_value_t = 0.0, allow_hyphen_values = true)]
     pub lod: f32,
     /// Where levels of detail come from
     #[arg(long, default_value = Hierarchy::default().name(), value_parser = choice::<Hierarchy>())]
     pub hierarchy: Hierarchy,
     /// Most surfels that are drawn: the level of detail is the least one that keeps to it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", value_parser = whole::<u64>(1..=u64::MAX))]
     pub max_points: Option<u64>,
 }
 

@@ -1,6 +1,6 @@
 //! Options of every command that reads points: estimation of missing attributes, and colours.
 
-use crate::cli::values::{ColourBy, bounds, choice, colour_by, positive, scanner};
+use crate::cli::values::{ColourBy, bounds, choice, class, colour_by, positive, scanner, whole};
 use clap::Args;
 use glam::DVec3;
 use std::num::NonZeroU64;
@@ -17,21 +17,21 @@ use surfel::settings::Choice;
 #[derive(Args, Debug)]
 pub struct Points {
     /// Renders N points of each file, evenly spread, with estimated radii and without lines and faces; of COPC its coarse levels are read alone [default: all, as the file has them]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", value_parser = whole::<u64>(1..=u64::MAX), allow_hyphen_values = true)]
     pub points: Option<u64>,
     /// Reads points in this box alone, in the files' coordinates: XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX, or XMIN,YMIN,XMAX,YMAX for any z
     ///
     /// Of COPC, nodes of its octree outside of the box are not read.
     #[arg(long, value_name = "MIN,MAX", value_parser = bounds, allow_hyphen_values = true)]
     pub bounds: Option<[DVec3; 2]>,
-    /// Reads points of these classes alone, as 2,6 for ground and buildings
-    #[arg(long, value_name = "CLASS,…", value_delimiter = ',')]
+    /// Reads points of these classes alone, by numbers or names, as 2,6 or ground,building
+    #[arg(long, value_name = "CLASS,…", value_delimiter = ',', value_parser = class)]
     pub class: Option<Vec<u8>>,
     /// Reads these returns of a lidar's pulses alone
     #[arg(long, value_name = "WHICH", value_parser = choice::<Returns>())]
     pub returns: Option<Returns>,
     /// Reads one point in N alone, from the first of each file on; neither lines nor faces
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", value_parser = whole::<u64>(1..=u64::MAX), allow_hyphen_values = true)]
     pub every: Option<u64>,
     /// Names of the columns of text files, such as x,y,z,-,intensity, where - ignores a column [default: the file's first line, or by the numbers]
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', allow_hyphen_values = true)]
@@ -43,7 +43,7 @@ pub struct Points {
     #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = positive::<f32>, allow_hyphen_values = true)]
     pub radius_scale: f32,
     /// Number of nearest points that normals and radii are estimated from, 6 to 64
-    #[arg(long, value_name = "K", default_value_t = 16, value_parser = clap::value_parser!(u8).range(6..=64), allow_hyphen_values = true)]
+    #[arg(long, value_name = "K", default_value_t = 16, value_parser = whole::<u8>(6..=64), allow_hyphen_values = true)]
     pub neighbours: u8,
     /// Estimates elliptical discs, longer along directions in which points are sparser; those on the triangles of a mesh stay
     #[arg(long)]

@@ -1,7 +1,7 @@
 //! Options of `surfel truth`.
 
 use super::{Background, Camera, Layer, background, choice, size};
-use crate::cli::values::{Filter, positive};
+use crate::cli::values::{Filter, positive, whole};
 use clap::Args;
 use std::ffi::OsString;
 use surfel::settings::{Choice, Shading};
@@ -29,7 +29,7 @@ pub struct Truth {
     #[arg(long, value_name = "E", default_value_t = truth::Options::default().error, value_parser = positive::<f64>, allow_hyphen_values = true)]
     pub error: f64,
     /// Maximum number of rays per pixel
-    #[arg(long, value_name = "N", default_value_t = truth::Options::default().most_samples, allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", default_value_t = truth::Options::default().most_samples, value_parser = whole::<u32>(0..=u32::MAX.into()), allow_hyphen_values = true)]
     pub most_samples: u32,
     /// Additional layers of an EXR file
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LAYER,…")]

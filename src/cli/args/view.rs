@@ -1,7 +1,7 @@
 //! Options of `surfel view`.
 
 use super::{Axes, Camera, Colours, DeviceArgs, Points, RenderSettings};
-use crate::cli::values::{choice, method, size};
+use crate::cli::values::{choice, method, number, size};
 use clap::Args;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -42,7 +42,7 @@ pub struct View {
     #[arg(long)]
     pub quantize: bool,
     /// Time budget of a frame while the camera moves, ms; slower frames become coarser
-    #[arg(long, value_name = "MS", default_value_t = 60.0)]
+    #[arg(long, value_name = "MS", value_parser = number::<f64>, default_value_t = 60.0)]
     pub frame_budget: f64,
     /// Loads files again when they change; the camera stays
     #[arg(long)]
