@@ -2,6 +2,9 @@
 
 use super::args::Surfel;
 use clap::CommandFactory;
+use std::ffi::OsString;
+use std::io::ErrorKind;
+use std::path::Path;
 use std::process::ExitCode;
 use surfel::Error;
 
@@ -21,8 +24,30 @@ const INVALID: u8 = 70;
 
 /// Prints an error; returns its exit code.
 pub fn of_error(error: &Error) -> ExitCode {
-    print_error(&format!("{error}{}", remedy(error)));
+    let detached =
+        detached_value(error, std::env::args_os()).map_or(String::new(), |text| format!("; {text}"));
+    print_error(&format!("{error}{}{detached}", remedy(error)));
     ExitCode::from(code(error))
+}
+
+/// What to write instead, if a file that does not exist comes after an option that takes its value after `=` alone.
+fn detached_value(error: &Error, arguments: impl Iterator<Item = OsString>) -> Option<String> {
+    let Error::Io { path, source, .. } = error else { return None };
+    let arguments: Vec<String> = arguments.map(|text| text.to_string_lossy().into_owned()).collect();
+    let surfel = Surfel::command();
+    let command = surfel.find_subcommand(arguments.get(1)?)?;
+    let takes_value = |option: &String| {
+        let name = option.strip_prefix("--").filter(|name| !name.is_empty());
+        let is_named = |arg: &clap::Arg| {
+            let aliases = arg.get_all_aliases().unwrap_or_default();
+            arg.get_long() == name || name.is_some_and(|name| aliases.contains(&name))
+        };
+        command.get_arguments().any(|arg| name.is_some() && arg.is_require_equals_set() && is_named(arg))
+    };
+    let is_value = |value: &String| source.kind() == ErrorKind::NotFound && Path::new(value) == path;
+    let (option, value) =
+        arguments.iter().zip(arguments.iter().skip(1)).find(|(a, b)| takes_value(a) && is_value(b))?;
+    Some(format!("{option} takes its value with `=`: {option}={value}"))
 }
 
 /// Prints the number of messages of the validation layers, if there are any; the messages themselves were logged.

@@ -113,7 +113,7 @@ fn weights_are_captured_once_and_render_by_surfel() {
         return;
     };
     let scene = "scene:bumpy-sphere?points=2000";
-    let run = program.run(&format!("convert {scene} -o w.ply --weights 12"));
+    let run = program.run(&format!("convert {scene} -o w.ply --weights=12"));
     assert!(run.err.contains("w.ply: 2,000 surfels\n"), "{}", run.err);
     let seen = run.err.split_once("weights of ").unwrap().1;
     let seen: u32 = seen.split_once(" surfels from 12 views").unwrap().0.replace(',', "").parse().unwrap();
@@ -124,7 +124,7 @@ fn weights_are_captured_once_and_render_by_surfel() {
     assert!(program.png("w.png").pixels().any(|pixel| pixel[3] == 255));
     let refused = program.run(&format!("render {scene} -o x.png {by_surfel}"));
     assert!(refused.code == 2 && refused.err.contains("surfel convert --weights"), "{}", refused.err);
-    let none = program.run(&format!("convert {scene} -o x.ply --weights 0"));
+    let none = program.run(&format!("convert {scene} -o x.ply --weights=0"));
     assert_eq!(none.code, 2, "{}", none.err);
 }
 

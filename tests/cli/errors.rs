@@ -112,6 +112,30 @@ fn errors_of_arguments_suggest_and_name_the_help() {
 }
 
 #[test]
+fn optional_values_take_an_equals_sign() {
+    let program = Program::new();
+    program.write("a.ply", surfels(&[GOOD]));
+    for (command, option, value) in [
+        ("render a.ply -o a.png", "--ao", "0.5"),
+        ("render a.ply -o a.png", "--color-bar", "on"),
+        ("render a.ply -o a.png", "--colour-bar", "on"),
+        ("render a.ply -o a.png", "--times", "split"),
+        ("convert a.ply -o b.ply", "--weights", "24"),
+        ("convert a.ply -o b.ply", "--lines", "0.1"),
+    ] {
+        let run = program.run(&format!("{command} {option} {value}"));
+        let line = run.error(1);
+        let hint = format!("; {option} takes its value with `=`: {option}={value}");
+        assert!(line.starts_with(&format!("{value}: cannot open")) && line.contains(&hint), "{line}");
+    }
+    let run = program.run("render none.ply -o a.png --ao a.ply");
+    assert!(!run.error(1).contains("with `=`"), "{}", run.err);
+    // The input after such an option is an input.
+    program.run("convert --lines a.ply -o b.ply").text();
+    assert_eq!(program.files(), ["a.ply", "b.ply"]);
+}
+
+#[test]
 fn outputs_that_cannot_be_written_are_refused_before_anything_is_read() {
     let program = Program::new();
     program.write("a.ply", surfels(&[GOOD]));

@@ -118,7 +118,7 @@ fn meshes_become_lines_and_lines_simpler() {
     let header = format!("element vertex 9\n{XYZ}element face 6\nproperty list uchar int vertex_indices");
     let records: String = rings.chain(faces).collect();
     program.write("a.ply", format!("ply\nformat ascii 1.0\n{header}\nend_header\n{records}"));
-    let run = program.run("convert a.ply -o b.ply --lines 1");
+    let run = program.run("convert a.ply -o b.ply --lines=1");
     let said = "a.ply: of 12 triangles 0 are leaves and became 0 segments of ribbons, 12 are branches and became 2 segments of \
                 tubes; of 9 vertices 3 are left\nb.ply: 2 tubes\n";
     assert_eq!(run.err, said);
@@ -126,6 +126,6 @@ fn meshes_become_lines_and_lines_simpler() {
     assert_eq!(run.err, "2 segments of lines simplified to 1\nc.ply: 1 tubes\n");
     // Thicker than the default fraction of so small an extent.
     assert!(program.run("convert a.ply --lines -o d.ply").err.ends_with("d.ply: 12 triangles\n"));
-    refused(&program, "convert a.ply -o b.ply --lines 0");
-    refused(&program, "convert a.ply -o b.ply --lines 1 --voxel 1");
+    refused(&program, "convert a.ply -o b.ply --lines=0");
+    refused(&program, "convert a.ply -o b.ply --lines=1 --voxel 1");
 }

@@ -30,7 +30,7 @@ pub struct Convert {
     /// Converts leaves and branches of meshes to ribbons and tubes
     ///
     /// Other faces stay, and so do branches thicker than RADIUS, in the positions' unit. RADIUS is 1/250 of the extent's diagonal by default.
-    #[arg(long, value_name = "RADIUS", num_args = 0..=1, default_missing_value = "auto", value_parser = thickest)]
+    #[arg(long, value_name = "RADIUS", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_parser = thickest)]
     pub lines: Option<ToLines>,
     /// Simplifies lines with an error of at most TOLERANCE, in the positions' unit
     #[arg(long, value_name = "TOLERANCE", value_parser = positive::<f64>, allow_hyphen_values = true)]
@@ -39,7 +39,7 @@ pub struct Convert {
     #[arg(long, value_name = "ANGLE", value_parser = edge, allow_hyphen_values = true)]
     pub sharp: Option<f32>,
     /// Captures normalization weights from VIEWS directions, for --normalization surfel [default: 24]
-    #[arg(long, value_name = "VIEWS", num_args = 0..=1, default_missing_value = "24", value_parser = whole::<u32>(1..=10_000))]
+    #[arg(long, value_name = "VIEWS", num_args = 0..=1, require_equals = true, default_missing_value = "24", value_parser = whole::<u32>(1..=10_000))]
     pub weights: Option<u32>,
     /// The device that captures weights
     #[command(flatten)]
