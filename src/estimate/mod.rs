@@ -60,8 +60,7 @@ const MARGIN: f64 = 1.3;
 )]
 #[strum(serialize_all = "kebab-case")]
 pub enum MeshSampling {
-    /// On the triangles of meshes that are coarse, whose triangles differ in size or meet at angles, or that have textures; at the vertices of
-    /// others.
+    /// On the triangles of coarse, uneven, angular and textured meshes, otherwise at the vertices.
     #[default]
     Auto,
     /// At the vertices.

@@ -14,7 +14,7 @@ pub trait Choice: Copy + Send + Sync + 'static {
     /// All names, including [`name`](Self::name).
     fn names(self) -> &'static [&'static str];
 
-    /// The help: the first paragraph of its documentation, without the full stop.
+    /// The help: the first line of its documentation, which is a whole sentence, without the full stop.
     fn about(self) -> &'static str;
 
     /// The choice with a name.
@@ -36,8 +36,8 @@ where
     }
 
     fn about(self) -> &'static str {
-        let paragraph = self.get_documentation().and_then(|text| text.lines().next());
-        paragraph.map_or("", |text| text.trim_end_matches('.'))
+        let line = self.get_documentation().and_then(|text| text.lines().next());
+        line.map_or("", |text| text.trim_end_matches('.'))
     }
 
     fn named(name: &str) -> Option<Self> {

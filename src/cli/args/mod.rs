@@ -6,6 +6,8 @@ mod bench;
 mod compare;
 mod convert;
 mod points;
+#[cfg(test)]
+mod tests;
 #[cfg(feature = "truth")]
 mod truth;
 #[cfg(feature = "viewer")]
