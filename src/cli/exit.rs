@@ -106,6 +106,7 @@ fn remedy(error: &Error) -> &'static str {
             " (`surfel convert --weights` captures them)"
         }
         Error::Usage(text) if text.starts_with("the pyramids of a picture") => " with --size",
+        Error::Input { cause, .. } if cause.ends_with("no spacing: give a radius") => " with --radius",
         Error::Input { cause, .. } if cause.contains("name the columns, ") => " with --columns",
         Error::NoDevice(text) if text.ends_with("choose another device") => " with --device",
         Error::NoWindow(_) => "; `surfel render` needs no display",

@@ -61,7 +61,7 @@ pub fn scanner(text: &str) -> Result<Scanner, String> {
 
 /// Parses a vector that is not 0; returns the unit vector.
 pub fn direction(text: &str) -> Result<DVec3, String> {
-    vector(text)?.try_normalize().ok_or_else(|| "give a direction that is not 0,0,0".into())
+    vector(text)?.try_normalize().ok_or_else(|| "it is zero: give a direction such as 0,0,1".into())
 }
 
 /// Parses a number.

@@ -181,8 +181,8 @@ impl Draft {
     pub fn finish(self, how: &Estimate) -> Result<(Surfels, Estimated)> {
         let Self { mut surfels, mut estimated, .. } = self;
         if surfels.radii.contains(&0.0) {
-            let text = "all points coincide, so they have no spacing: give a radius";
-            return Err(Error::Usage(text.into()));
+            let all = if surfels.len() == 1 { "it has one point" } else { "all points coincide" };
+            return Err(Error::Usage(format!("{all}, so there is no spacing: give a radius")));
         }
         surfels.radii.iter_mut().for_each(|radius| *radius *= how.radius_scale);
         if let Some(radius) = surfels.radii.iter().find(|radius| !(radius.is_finite() && **radius > 0.0)) {

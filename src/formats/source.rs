@@ -24,7 +24,8 @@ pub enum Source<'a> {
 impl<'a> Source<'a> {
     /// Opens a file. A file without a size, such as a pipe, is read completely if its beginning is `known`: a device may have no end.
     pub fn open(path: &Path, known: impl Fn(&[u8]) -> bool) -> Result<Source<'static>> {
-        let mut file = File::open(path).map_err(|error| Error::io(path, "cannot open")(advise(error)))?;
+        let mut file =
+            File::open(path).map_err(|error| Error::io(path, "cannot open")(advise(path, error)))?;
         let about = file.metadata().map_err(Error::io(path, "cannot read"))?;
         if cfg!(unix) && about.is_file() {
             return Ok(Source::File { file, size: about.len() });
@@ -146,8 +147,11 @@ pub fn room<T: bytemuck::Zeroable>(count: u64) -> Parsed<Vec<T>> {
     zeros.ok_or_else(|| format!("not enough memory for {count} entries: give a smaller file").into())
 }
 
-fn advise(error: io::Error) -> io::Error {
+fn advise(path: &Path, error: io::Error) -> io::Error {
     match error.kind() {
+        ErrorKind::NotFound if path == Path::new("-") => {
+            io::Error::new(ErrorKind::NotFound, "to read standard input, name /dev/stdin")
+        }
         ErrorKind::NotFound => {
             io::Error::new(ErrorKind::NotFound, "there is no such file: check the name and the folder")
         }

@@ -289,7 +289,7 @@ fn wrong_options_exit_with_2_before_anything_is_read() {
         assert!(run.error(1).starts_with("missing.ply: "), "{}", run.err);
     }
     for (arguments, cause) in
-        [("--voxel 0", "above 0"), ("--voxel -1", "above 0"), ("--up 0,0,0", "not 0,0,0")]
+        [("--voxel 0", "above 0"), ("--voxel -1", "above 0"), ("--up 0,0,0", "it is zero: give a direction")]
     {
         let run = program.run(&format!("convert missing.ply -o out.ply {arguments}"));
         assert!(run.error(2).contains(cause), "{arguments}: {}", run.err);

@@ -43,6 +43,20 @@ fn a_missing_input_exits_with_1() {
         assert!(line.starts_with("missing.ply: cannot open: there is no such file"), "{line}");
         assert!(program.files().is_empty());
     }
+    let run = Program::new().run("render - -o out.png");
+    assert!(run.error(1).ends_with("-: cannot open: to read standard input, name /dev/stdin"), "{}", run.err);
+}
+
+#[test]
+fn points_without_a_spacing_need_a_radius() {
+    let program = Program::new();
+    program.write("one.xyz", "1 2 3\n").write("two.xyz", "1 2 3\n1 2 3\n");
+    for (file, cause) in [("one.xyz", "it has one point"), ("two.xyz", "all points coincide")] {
+        let run = program.run(&format!("render {file} -o a.png --reference --size 8x8"));
+        let line = format!("{file}: {cause}, so there is no spacing: give a radius with --radius");
+        assert!(run.error(1).ends_with(&line), "{}", run.err);
+        program.run(&format!("render {file} -o a.png --reference --size 8x8 --radius 1")).text();
+    }
 }
 
 #[test]
@@ -58,6 +72,7 @@ fn wrong_arguments_exit_with_2_before_anything_is_read() {
         ("--method ray-tracing", "perspective-ewa"),
         ("--method ewa", "a similar value exists: 'perspective-ewa';"),
         ("--method pull", "a similar value exists: 'pull-push';"),
+        ("--up 0,0,0", "it is zero: give a direction such as 0,0,1"),
         ("--lod fine", "give a number, for example 0.5"),
         ("--every 0", "give a whole number above 0"),
         (

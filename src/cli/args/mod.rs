@@ -25,7 +25,8 @@ pub use truth::Truth;
 pub use view::View;
 
 use super::values::{
-    Background, Layer, background, choice, kernel, method, number, pixel_filter, size, vector, whole,
+    Background, Layer, background, choice, direction, kernel, method, number, pixel_filter, size, vector,
+    whole,
 };
 use clap::builder::ArgPredicate;
 use clap::{Args, Parser, Subcommand};
@@ -246,7 +247,7 @@ pub struct Camera {
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub target: Option<DVec3>,
     /// Up direction of the picture [default: 0,0,1 for LAS, LAZ, E57, PTX, STL and wide flat bare points, 0,-1,0 for depth images and 3D Gaussians but SPZ, otherwise 0,1,0]
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
     pub up: Option<DVec3>,
     /// Vertical angle of view, degrees [default: 45]
     #[arg(long, value_name = "DEG", value_parser = number::<f64>, allow_hyphen_values = true)]
