@@ -23,8 +23,8 @@
 //! | [`guide`] | the manual: files, commands, methods, accuracy, cost, embedding | |
 //!
 //! ```no_run
+//! use surfel::formats::image::{Output, write_png};
 //! use surfel::geometry::{Camera, Extent};
-//! use surfel::glam::DVec3;
 //! use surfel::load::{LoadOptions, load};
 //! use surfel::vk::{Device, DeviceOptions};
 //! use surfel::{RenderOptions, Renderer, Scene, Settings};
@@ -35,10 +35,10 @@
 //! let scene = Scene::upload(&device, &loaded.model)?;
 //! let mut renderer = Renderer::new(&device, RenderOptions { size: [800, 600], ..Default::default() })?;
 //! let extent = Extent::of(&loaded.model).unwrap_or_default();
-//! let camera = Camera::framing(&extent, DVec3::Y, 45f64.to_radians(), 800.0 / 600.0)?;
-//! let (picture, _report) = renderer.render_picture(&scene, &camera, &Settings::default())?;
-//! assert_eq!(picture.colour.len(), 800 * 600);
-//! # Ok(())
+//! let camera = Camera::framing(&extent, loaded.up, 45f64.to_radians(), 800.0 / 600.0)?;
+//! let settings = Settings::default();
+//! let (picture, _report) = renderer.render_picture(&scene, &camera, &settings)?;
+//! write_png(&picture, settings.shading, &Output::parse("out.png".as_ref()))
 //! # }
 //! ```
 
