@@ -100,20 +100,27 @@ impl Filter {
         Ok(columns)
     }
 
-    /// The conditions for coordinates that are declared as `f32`: bounds in decimals include the coordinates that they are rounded to.
-    pub(super) fn for_single_precision(self) -> Self {
-        let wider = |[min, max]: [DVec3; 2]| {
+    /// The conditions with bounds that include the coordinates which they are rounded from: decimals of coordinates in single precision, or of
+    /// positions as exact as they are stored, relative to an origin.
+    pub(super) fn for_rounded_bounds(self, is_single: bool) -> Self {
+        let single = |[min, max]: [DVec3; 2]| {
             let [min, max] = [min, max].map(|at| at.as_vec3().to_array());
             [min.map(f32::next_down), max.map(f32::next_up)].map(|at| Vec3::from(at).as_dvec3())
         };
-        Self { bounds: self.bounds.map(wider), ..self }
+        let double = |[min, max]: [DVec3; 2]| {
+            let sides = (max - min).to_array().into_iter().filter(|side| side.is_finite());
+            let stored = sides.fold(0.0, f64::max) * f64::from(f32::EPSILON);
+            // Coordinates that are scaled and shifted are rounded themselves.
+            let error = |at: DVec3| at.abs() * (4.0 * f64::EPSILON) + stored;
+            [min - error(min), max + error(max)]
+        };
+        let bounds = self.bounds.map(|bounds| if is_single { single(bounds) } else { double(bounds) });
+        Self { bounds, ..self }
     }
 
-    /// Whether a position is within the bounds, up to the rounding of coordinates that are scaled and shifted.
+    /// Whether a position is within the bounds.
     pub(super) fn contains(&self, at: DVec3) -> bool {
-        const ROUNDING: f64 = 1e-14;
-        let error = at.abs() * ROUNDING;
-        self.bounds.is_none_or(|[min, max]| (at + error).cmpge(min).all() && (at - error).cmple(max).all())
+        self.bounds.is_none_or(|[min, max]| at.cmpge(min).all() && at.cmple(max).all())
     }
 
     /// Whether a point at a position with these values of the [`PROPERTIES`] is read.

@@ -77,11 +77,7 @@ impl Layout {
             colour: None,
             narrow,
             origin: None,
-            filter: if narrow {
-                options.filter.clone().for_single_precision()
-            } else {
-                options.filter.clone()
-            },
+            filter: options.filter.clone().for_rounded_bounds(narrow),
             counts: options.counts,
             attributes: Vec::new(),
             diameters: false,
