@@ -31,7 +31,7 @@ pub fn run(args: &Convert) -> Result<()> {
         colouring: args.colours.colouring()?,
         up: args.up,
         texture: args.colours.texture()?,
-        attributes: formats::keeps_attributes(out),
+        attributes: true,
         ..Default::default()
     };
     let mut loaded = load(&args.inputs, &options, &*bars)?;

@@ -33,6 +33,7 @@ mod obj;
 #[cfg(feature = "pcd")]
 mod pcd;
 pub mod ply;
+mod point_columns;
 #[cfg(any(feature = "e57", feature = "las"))]
 mod point_table;
 mod ptx;
@@ -59,8 +60,7 @@ pub use reader::{Inspected, Loaded, ReadOptions, extensions, inspect, levels, re
 pub use report::{Dropped, Faces, Lines, Report};
 pub use survey::Survey;
 pub use writer::{
-    Contents, DiscProperties, PointSource, Written, check_writable, keeps_attributes, writable_extensions,
-    write,
+    Contents, DiscProperties, PointSource, Written, check_writable, writable_extensions, write,
 };
 
 use crate::error::{Error, Result};

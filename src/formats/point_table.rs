@@ -1,62 +1,27 @@
 //! The points of a model as rows of a file of points, with the attributes of its inputs.
 
 use super::declared::Scalar;
+#[cfg(feature = "e57")]
+use super::point_columns::LOCAL;
+use super::point_columns::{COLOURS, Column, POSITION, PointColumns, find};
 use super::writer::{Contents, PointSource};
 use crate::geometry::{Colours, Surfels, srgb};
 use glam::DVec3;
 use std::borrow::Cow;
 
-/// Names of the coordinates.
-const POSITION: [&str; 3] = ["x", "y", "z"];
-/// Names of the coordinates in the frame of a scan, before its pose is applied.
-pub const LOCAL: [&str; 3] = ["local_x", "local_y", "local_z"];
-/// Names of the colour channels.
-const COLOURS: [&str; 3] = ["red", "green", "blue"];
-
 /// One row per surfel, in the order of the inputs' points; surfels that are no points of them come last.
 pub struct PointTable<'a> {
     pub contents: Contents<'a>,
     /// Attributes of the inputs beside coordinates and colours.
-    pub columns: Vec<Column>,
+    pub columns: PointColumns<'a>,
     /// The surfel of each row, if it is not the row's number.
     order: Option<Vec<u32>>,
-    /// Index of the first point of each input.
-    starts: Vec<usize>,
     position: Triple,
     #[cfg(feature = "e57")]
     local: Triple,
     /// 16-bit codes, if all inputs have them.
     codes: Option<Triple>,
     colours: Option<Cow<'a, Colours>>,
-}
-
-/// Other names of fields, in lower case and without the prefix of CloudCompare.
-const ALIASES: [(&str, &str); 6] = [
-    ("time", "gps_time"),
-    ("gpstime", "gps_time"),
-    ("class", "classification"),
-    ("returnnumber", "return_number"),
-    ("numberofreturns", "number_of_returns"),
-    ("pointsourceid", "point_source_id"),
-];
-
-/// An attribute, by name.
-pub struct Column {
-    pub name: String,
-    /// Type of its numbers: the same in all inputs, or else float64.
-    pub scalar: Scalar,
-    /// Index of the attribute in each input.
-    inputs: Vec<Option<usize>>,
-}
-
-impl Column {
-    /// The field of a format with fixed ones that the attribute is, by LAS's names.
-    pub fn field_name(&self) -> String {
-        let name = self.name.to_lowercase();
-        let name = name.strip_prefix("scalar_").unwrap_or(&name);
-        let alias = ALIASES.iter().find(|(other, _)| *other == name);
-        alias.map_or(name, |(_, field)| field).to_owned()
-    }
 }
 
 /// Indices of three attributes in each input.
@@ -66,35 +31,19 @@ impl<'a> PointTable<'a> {
     pub fn new(contents: &Contents<'a>) -> Self {
         let surfels = contents.parts.surfels;
         let inputs = contents.inputs;
-        let mut next = 0;
-        let starts = inputs.iter().map(|input| {
-            next += input.points;
-            next - input.points
-        });
-        let starts: Vec<usize> = starts.collect();
-        let indices = surfels.point_indices.as_ref();
-        let has_points = indices.is_some_and(|all| all.iter().any(|index| *index != Surfels::NO_POINT));
         let textured = surfels.texture.as_ref();
         let baked = textured.map(|texture| texture.baked(&surfels.positions, Some(&surfels.radii)));
         let colours = baked.map(Cow::Owned).or(surfels.colours.as_ref().map(Cow::Borrowed));
         Self {
             contents: *contents,
-            columns: if has_points { columns(inputs) } else { Vec::new() },
+            columns: PointColumns::new(contents),
             order: surfels.point_indices.as_deref().map(order),
-            starts,
             position: triple(inputs, POSITION),
             #[cfg(feature = "e57")]
             local: triple(inputs, LOCAL),
             codes: codes(contents),
             colours,
         }
-    }
-
-    /// Names of the inputs' properties of which the rows have no numbers: lists, and any of thinned points or samples of meshes.
-    pub fn unknown(&self) -> Vec<String> {
-        let skipped = self.contents.inputs.iter().flat_map(|input| &input.skipped);
-        let is_unknown = |name: &&String| self.columns.iter().all(|column| column.name != **name);
-        skipped.filter(is_unknown).cloned().collect()
     }
 
     /// Number of rows.
@@ -113,12 +62,7 @@ impl<'a> PointTable<'a> {
 
     /// The input of a row, and the index of its point there.
     pub fn point(&self, row: usize) -> Option<(usize, usize)> {
-        let index = self.surfels().point_indices.as_ref()?[self.surfel(row)];
-        if index == Surfels::NO_POINT {
-            return None;
-        }
-        let input = self.starts.partition_point(|start| *start <= index as usize).checked_sub(1)?;
-        Some((input, index as usize - self.starts[input]))
+        self.columns.point(self.surfel(row))
     }
 
     /// The position in the inputs' coordinates, as they have it.
@@ -137,12 +81,7 @@ impl<'a> PointTable<'a> {
 
     /// The number of a column; `None` if the input does not have it, or it is not finite.
     pub fn number(&self, column: &Column, row: usize) -> Option<f64> {
-        let (input, index) = self.point(row)?;
-        let attribute = column.inputs[input]?;
-        self.contents.inputs[input].attributes[attribute]
-            .values
-            .get(index)
-            .filter(|number| number.is_finite())
+        self.columns.number(column, self.surfel(row))
     }
 
     /// Whether there are colours.
@@ -197,10 +136,6 @@ fn order(indices: &[u32]) -> Vec<u32> {
     order
 }
 
-fn find(input: &PointSource, name: &str) -> Option<usize> {
-    input.attributes.iter().position(|attribute| attribute.name == name)
-}
-
 fn triple(inputs: &[PointSource], names: [&str; 3]) -> Triple {
     let of = |input: &PointSource| {
         let [a, b, c] = names.map(|name| find(input, name));
@@ -221,23 +156,4 @@ fn codes(contents: &Contents) -> Option<Triple> {
     let is_point = has_points.is_some_and(|indices| !indices.contains(&Surfels::NO_POINT));
     let usable = is_point && !contents.recoloured && contents.parts.surfels.texture.is_none();
     (usable && !inputs.is_empty() && inputs.iter().zip(&all).all(is_deep)).then_some(all)
-}
-
-/// All attributes but coordinates and colours, in the order of the inputs.
-fn columns(inputs: &[PointSource]) -> Vec<Column> {
-    let mut columns: Vec<Column> = Vec::new();
-    let others = |name: &str| ![POSITION, LOCAL, COLOURS].concat().contains(&name);
-    for attribute in inputs.iter().flat_map(|input| &input.attributes).filter(|a| others(&a.name)) {
-        let scalar = attribute.values.scalar();
-        match columns.iter_mut().find(|column| column.name == attribute.name) {
-            Some(column) if column.scalar == scalar => {}
-            Some(column) => column.scalar = Scalar::F64,
-            None => columns.push(Column {
-                name: attribute.name.clone(),
-                scalar,
-                inputs: inputs.iter().map(|input| find(input, &attribute.name)).collect(),
-            }),
-        }
-    }
-    columns
 }

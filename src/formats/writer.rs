@@ -1,6 +1,7 @@
 //! Writers of models: one per file format, selected by the extension.
 
 use super::attributes::Attribute;
+use super::point_columns::PointColumns;
 #[cfg(any(feature = "e57", feature = "las"))]
 use super::point_table::PointTable;
 use super::survey::Survey;
@@ -39,6 +40,13 @@ pub struct Contents<'a> {
     pub recoloured: bool,
     /// Which properties of the discs are written.
     pub discs: DiscProperties,
+}
+
+impl<'a> Contents<'a> {
+    /// A model alone, with all that it has.
+    pub fn of(parts: impl Into<Parts<'a>>) -> Self {
+        Self { parts: parts.into(), inputs: &[], recoloured: false, discs: DiscProperties::All }
+    }
 }
 
 /// Which properties of discs a file has.
@@ -87,13 +95,18 @@ impl Written {
         }
     }
 
+    /// Adds the properties of the inputs without a number for each point.
+    pub(super) fn leave_out_unknown(&mut self, columns: &PointColumns) {
+        self.leave_out(
+            columns.unknown(),
+            "properties that are lists, or that thinned points and samples of meshes do not have",
+        );
+    }
+
     /// Adds what files of points do not hold: elements, and properties without a number for each point.
     #[cfg(any(feature = "e57", feature = "las"))]
     pub(super) fn leave_out_elements(&mut self, table: &PointTable) {
-        self.leave_out(
-            table.unknown(),
-            "properties that are lists, or that thinned points and samples of meshes do not have",
-        );
+        self.leave_out_unknown(&table.columns);
         let parts = &table.contents.parts;
         let primitives = parts.primitives;
         let count = |count: Option<usize>, name| {
@@ -134,11 +147,6 @@ pub fn write(path: &Path, contents: &Contents<'_>, progress: &dyn Progress) -> R
 pub fn check_writable(path: &Path) -> Result<()> {
     writer_of(path)?;
     atomic::check(path)
-}
-
-/// Whether files with this extension have the attributes of the inputs.
-pub fn keeps_attributes(path: &Path) -> bool {
-    extension(path).is_some_and(|extension| extension != "ply")
 }
 
 /// Extensions of all formats that are written, in lower case.

@@ -98,7 +98,7 @@ impl Load<'_> {
 #[cfg(all(test, feature = "las", feature = "scenes"))]
 mod tests {
     use crate::Progress;
-    use crate::formats::{self, Contents, DiscProperties};
+    use crate::formats::{self, Contents};
     use crate::load::{Listener, LoadOptions, Preview, load};
     use crate::verify::scenes;
     use std::path::Path;
@@ -149,8 +149,7 @@ mod tests {
     fn coarse_levels_are_a_preview_before_a_file_is_read() {
         let folder = tempfile::tempdir().unwrap();
         let surfels = scenes::open("scene:sphere?points=150000").unwrap();
-        let contents =
-            Contents { parts: (&surfels).into(), inputs: &[], recoloured: false, discs: DiscProperties::All };
+        let contents = Contents::of(&surfels);
         let all = ["a.laz", "a.copc.laz"].map(|name| {
             let path = folder.path().join(name);
             formats::write(&path, &contents, &()).unwrap();

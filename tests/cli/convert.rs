@@ -98,9 +98,10 @@ fn colours_are_written() {
     ] {
         program.run(&format!("convert a.ply -o c.ply --color-by {by}")).text();
         let bytes = std::fs::read(program.path("c.ply")).unwrap();
-        let records = &bytes[bytes.len() - 2 * 31..];
+        // The last four bytes of a record are those of q.
+        let records = &bytes[bytes.len() - 2 * 35..];
         assert_eq!(
-            [&records[28..31], &records[59..62]],
+            [&records[28..31], &records[63..66]],
             colours.each_ref().map(|colour| &colour[..]),
             "{by}"
         );

@@ -24,7 +24,7 @@ use super::source::{BEGINNING, Parsed, Source, Stream};
 use super::survey::Survey;
 use super::table::points::{MANY_POINTS, SOME_POINTS, origin_of_some};
 use super::table::{Arrays, Layout, Points, fill};
-use super::{Inspected, Loaded, ReadOptions, Report, WantedAttributes, point_table};
+use super::{Inspected, Loaded, ReadOptions, Report, WantedAttributes, point_columns};
 use crate::Progress;
 use crate::error::Cause;
 use e57::{E57Reader, PointCloud};
@@ -178,7 +178,7 @@ fn with_local(element: &Element, scans: &[PointCloud], options: &ReadOptions) ->
     let mut element = element.clone();
     if options.attributes == WantedAttributes::All && scans.iter().any(|scan| scan.transform.is_some()) {
         let local = |name: &str| Property { name: name.into(), kind: Kind::Scalar(Scalar::F64) };
-        element.properties.extend(point_table::LOCAL.map(local));
+        element.properties.extend(point_columns::LOCAL.map(local));
     }
     element
 }

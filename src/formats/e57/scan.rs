@@ -3,7 +3,7 @@
 use super::packets::{Packets, Scratch};
 use crate::formats::declared::{Kind, Property, Scalar};
 use crate::formats::meter::Meter;
-use crate::formats::point_table::LOCAL;
+use crate::formats::point_columns::LOCAL;
 use crate::formats::source::Parsed;
 use crate::formats::table::{Block, Layout, ROWS, Rows};
 use e57::{PointCloud, RecordDataType, RecordName, RecordValue, Transform};

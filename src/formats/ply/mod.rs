@@ -51,6 +51,7 @@ mod materials;
 mod others;
 mod records;
 mod row;
+mod scalars;
 #[cfg(test)]
 mod tests;
 mod vertices;

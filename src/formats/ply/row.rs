@@ -16,7 +16,7 @@ pub(super) const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
 /// A surfel, or a vertex of a line or triangle.
 #[derive(Default)]
-pub(super) struct Row {
+pub(super) struct Row<'a> {
     position: DVec3,
     /// The properties of [`disc::NAMES`].
     disc: [f32; disc::NAMES.len()],
@@ -24,11 +24,15 @@ pub(super) struct Row {
     srgb: [u8; 3],
     tangent: [f32; 3],
     material: i32,
+    /// Names of the inputs' properties.
+    names: &'a [String],
+    /// Their numbers; vertices have none.
+    numbers: Vec<f64>,
 }
 
-impl Row {
+impl<'a> Row<'a> {
     /// Surfel `i`.
-    pub fn surfel(contents: &FileContents, i: usize) -> Self {
+    pub fn surfel(contents: &'a FileContents, i: usize) -> Self {
         let surfels = contents.parts.surfels;
         let [own, others] = contents.colours();
         let (linear, srgb) = colour(own, others, i);
@@ -39,11 +43,13 @@ impl Row {
             srgb,
             tangent: [0.0; 3],
             material: contents.material(i),
+            names: &contents.scalars.names,
+            numbers: contents.scalars.of(i),
         }
     }
 
     /// Vertex `i` of lines and triangles.
-    pub fn vertex(contents: &FileContents, primitives: &Primitives, i: usize) -> Self {
+    pub fn vertex(contents: &'a FileContents, primitives: &Primitives, i: usize) -> Self {
         let direction = |is: bool| if is { primitives.directions[i].to_array() } else { [0.0; 3] };
         let [others, own] = contents.colours();
         let (linear, srgb) = colour(own, others, i);
@@ -59,6 +65,8 @@ impl Row {
             srgb,
             tangent: direction(contents.tangent[i]),
             material: contents.material(contents.parts.surfels.len() + i),
+            names: &contents.scalars.names,
+            numbers: Vec::new(),
         }
     }
 }
@@ -85,13 +93,17 @@ fn colour(own: Option<&Colours>, others: Option<&Colours>, i: usize) -> ([f32; 3
     }
 }
 
-impl PropertyAccess for Row {
+impl PropertyAccess for Row<'_> {
     fn new() -> Self {
         Self::default()
     }
 
     fn get_double(&self, name: &String) -> Option<f64> {
-        Some(self.position[["x", "y", "z"].iter().position(|axis| axis == name)?])
+        if let Some(axis) = ["x", "y", "z"].iter().position(|axis| axis == name) {
+            return Some(self.position[axis]);
+        }
+        let number = self.names.iter().position(|own| own == name)?;
+        Some(self.numbers.get(number).copied().unwrap_or(f64::NAN))
     }
 
     fn get_float(&self, name: &String) -> Option<f32> {
@@ -102,11 +114,31 @@ impl PropertyAccess for Row {
     }
 
     fn get_int(&self, name: &String) -> Option<i32> {
-        (name == MATERIAL_NAME).then_some(self.material)
+        if name == MATERIAL_NAME {
+            Some(self.material)
+        } else {
+            self.get_double(name).map(|value| value as i32)
+        }
     }
 
     fn get_uchar(&self, name: &String) -> Option<u8> {
         named(&CHANNELS, &self.srgb, name).or_else(|| Some(self.get_float(name)? as u8))
+    }
+
+    fn get_char(&self, name: &String) -> Option<i8> {
+        self.get_double(name).map(|value| value as i8)
+    }
+
+    fn get_short(&self, name: &String) -> Option<i16> {
+        self.get_double(name).map(|value| value as i16)
+    }
+
+    fn get_ushort(&self, name: &String) -> Option<u16> {
+        self.get_double(name).map(|value| value as u16)
+    }
+
+    fn get_uint(&self, name: &String) -> Option<u32> {
+        self.get_double(name).map(|value| value as u32)
     }
 }
 

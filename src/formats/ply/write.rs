@@ -3,6 +3,7 @@
 use super::lines::TUBE;
 use super::materials;
 use super::row::{CHANNELS, Line, Row, Shine, Triangle};
+use super::scalars::Scalars;
 use crate::Progress;
 use crate::error::{Error, Result};
 use crate::formats::declared::Scalar;
@@ -27,7 +28,7 @@ use std::path::Path;
 /// weights surfel_weight0 to surfel_weight3 as float, all 0 without; for tubes, their tangents tx ty tz as float, with nx ny nz 0; red
 /// green blue as uchar if sRGB-encoded, as float if linear, of a texture its colours at the vertices; for materials, material_index as int,
 /// −1 without, and an element material with specular_red specular_green specular_blue and specular_power as float, those of the surfels
-/// first.
+/// first. [`formats::write`](crate::formats::write()) adds the properties of the inputs, with their own names and types.
 ///
 /// The surfels come first, then the vertices that lines and triangles use, in order. For lines, an element edge has vertex1 and vertex2
 /// and, as uchar, tube: ribbons first, then tubes. For triangles, an element face has the list vertex_indices. If only surfels or only
@@ -37,18 +38,22 @@ use std::path::Path;
 /// [`Error::Usage`] if the arrays differ in length, an index of a vertex is invalid, or there are more than 2³² − 1 vertices; [`Error::Io`]
 /// if the file cannot be written.
 pub fn write<'a>(path: &Path, parts: impl Into<Parts<'a>>) -> Result<()> {
-    write_properties(path, parts.into(), DiscProperties::All)
+    write_contents(path, &Contents::of(parts)).map(drop)
 }
 
-/// Writes some properties of the discs.
-fn write_properties(path: &Path, parts: Parts<'_>, discs: DiscProperties) -> Result<()> {
+/// Writes a model with the properties of its inputs.
+fn write_contents(path: &Path, contents: &Contents<'_>) -> Result<Written> {
+    let parts = contents.parts;
     parts.check()?;
     let count = parts.surfels.len() + parts.primitives.map_or(0, Primitives::len);
     if u32::try_from(count).is_err() {
         return Err(Error::Usage(format!("{count} surfels and vertices in one file: give at most 2³² − 1")));
     }
-    let contents = FileContents::new(parts, discs)?;
-    atomic::write(path, |mut out| records(&mut out, &contents))
+    let contents = FileContents::new(contents)?;
+    atomic::write(path, |mut out| records(&mut out, &contents))?;
+    let mut written = Written::default();
+    contents.scalars.leave_out(&mut written);
+    Ok(written)
 }
 
 impl FileWriter for super::Ply {
@@ -59,11 +64,8 @@ impl FileWriter for super::Ply {
     fn write(&self, path: &Path, contents: &Contents<'_>, progress: &dyn Progress) -> Result<Written> {
         let count = contents.parts.surfels.len() as u64;
         progress.at("writing", 0, count);
-        write_properties(path, contents.parts, contents.discs)?;
+        let written = write_contents(path, contents)?;
         progress.at("writing", count, count);
-        let mut written = Written::default();
-        let skipped = contents.inputs.iter().flat_map(|input| input.skipped.iter().cloned()).collect();
-        written.leave_out(skipped, "not written to PLY; LAS and LAZ files keep them");
         Ok(written)
     }
 }
@@ -84,10 +86,13 @@ pub(super) struct FileContents<'a> {
     baked: [Option<Colours>; 2],
     /// Materials of surfels, then of all vertices.
     materials: Option<Materials>,
+    /// Properties of the inputs.
+    pub scalars: Scalars<'a>,
 }
 
 impl<'a> FileContents<'a> {
-    fn new(parts: Parts<'a>, discs: DiscProperties) -> Result<Self> {
+    fn new(contents: &Contents<'a>) -> Result<Self> {
+        let Contents { parts, discs, .. } = *contents;
         let none = Primitives::default();
         let primitives = parts.primitives.unwrap_or(&none);
         let (mut tangent, mut normal) = (vec![false; primitives.len()], vec![false; primitives.len()]);
@@ -109,7 +114,11 @@ impl<'a> FileContents<'a> {
             (primitives.materials.as_ref(), primitives.len()),
         ])?;
         let baked = [of_surfels, of_vertices];
-        Ok(Self { parts, discs, vertices, place, tangent, normal, baked, materials })
+        let scalars = Scalars::new(contents);
+        let mut new = Self { parts, discs, vertices, place, tangent, normal, baked, materials, scalars };
+        let own = vertex(&new);
+        new.scalars.keep(&own);
+        Ok(new)
     }
 
     /// Number of vertices in the file.
@@ -211,6 +220,7 @@ fn vertex(contents: &FileContents) -> ElementDef {
         }
         _ => add(&CHANNELS, ScalarType::UChar),
     }
+    contents.scalars.declare(&mut vertex);
     vertex
 }
 

@@ -4,7 +4,8 @@ use crate::formats::DiscProperties;
 use crate::formats::declared::Scalar;
 use crate::formats::e57::ScanSurvey;
 use crate::formats::e57::scan::rotation;
-use crate::formats::point_table::{Column, PointTable};
+use crate::formats::point_columns::Column;
+use crate::formats::point_table::PointTable;
 use crate::formats::writer::Written;
 use e57::{IntensityLimits, RawValues, Record, RecordDataType, RecordName, RecordValue, Transform};
 use glam::DMat3;
@@ -51,7 +52,7 @@ impl<'a> Fields<'a> {
     /// The attribute that a field has: the first of its name.
     pub fn column<'t>(table: &'t PointTable, field: &str) -> Option<&'t Column> {
         let has_name = |column: &&Column| Self::NAMES.contains(&field) && column.field_name() == field;
-        table.columns.iter().find(has_name)
+        table.columns.all.iter().find(has_name)
     }
 
     /// The fields of some rows, with 8-bit or 16-bit colours; says in `written` what is left out.

@@ -13,7 +13,8 @@ use crate::error::Result;
 use crate::formats::atomic;
 use crate::formats::disc;
 use crate::formats::meter::Meter;
-use crate::formats::point_table::{Column, PointTable};
+use crate::formats::point_columns::Column;
+use crate::formats::point_table::PointTable;
 use crate::formats::quoted::on_one_line;
 use crate::formats::reader::Reader;
 use crate::formats::writer::{Contents, Writer, Written, point_table};
@@ -66,7 +67,8 @@ fn leave_out(table: &PointTable, written: &mut Written) {
         let first = Fields::column(table, &column.field_name());
         column.name == SCAN || first.is_some_and(|first| first.name == column.name)
     };
-    let columns = table.columns.iter().filter(|column| !has_field(column)).map(|column| column.name.clone());
+    let columns =
+        table.columns.all.iter().filter(|column| !has_field(column)).map(|column| column.name.clone());
     let discs =
         disc::present(table.surfels(), table.contents.discs).filter(|property| *property >= disc::RADIUS);
     let discs = discs.map(|property| disc::NAMES[property].to_owned());
@@ -75,7 +77,7 @@ fn leave_out(table: &PointTable, written: &mut Written) {
 
 /// Runs of points of the same scan; a single one, which may be empty, without scans.
 fn groups<'a>(table: &PointTable<'a>) -> Vec<Group<'a>> {
-    let numbers = table.columns.iter().find(|column| column.name == SCAN);
+    let numbers = table.columns.all.iter().find(|column| column.name == SCAN);
     let inputs = table.contents.inputs;
     let key = |row: usize| {
         let (input, _) = table.point(row)?;

@@ -1,9 +1,7 @@
 //! Scans that are written and read again.
 
 use crate::formats::round_trip::{all, reversed};
-use crate::formats::{
-    Attribute, Contents, DiscProperties, PointSource, ReadOptions, Written, read, read_bytes, write,
-};
+use crate::formats::{Attribute, Contents, PointSource, ReadOptions, Written, read, read_bytes, write};
 use crate::geometry::{Colours, Ellipse, Surfels, View};
 use glam::Vec3;
 use std::collections::BTreeSet;
@@ -12,12 +10,7 @@ use tempfile::TempDir;
 
 fn written(folder: &TempDir, surfels: &Surfels, inputs: &[PointSource]) -> (PathBuf, Written) {
     let path = folder.path().join("a.e57");
-    let written = write(
-        &path,
-        &Contents { parts: surfels.into(), inputs, recoloured: false, discs: DiscProperties::All },
-        &(),
-    )
-    .unwrap();
+    let written = write(&path, &Contents { inputs, ..Contents::of(surfels) }, &()).unwrap();
     (path, written)
 }
 
@@ -127,15 +120,6 @@ fn missing_numbers_are_flagged_and_limits_stated() {
 #[test]
 fn texts_cannot_end_their_section() {
     assert_eq!(super::text("a ]]> b\u{1}\n"), "a ]] > b\n");
-    let error = write(
-        Path::new("/nowhere/a.e57"),
-        &Contents {
-            parts: (&Surfels::default()).into(),
-            inputs: &[],
-            recoloured: false,
-            discs: DiscProperties::All,
-        },
-        &(),
-    );
+    let error = write(Path::new("/nowhere/a.e57"), &Contents::of(&Surfels::default()), &());
     assert!(error.unwrap_err().to_string().contains("/nowhere does not exist: create it"));
 }

@@ -2,7 +2,8 @@
 
 use crate::formats::declared::Scalar;
 use crate::formats::las::fields::Field;
-use crate::formats::point_table::{Column, PointTable};
+use crate::formats::point_columns::Column;
+use crate::formats::point_table::PointTable;
 use rayon::prelude::*;
 
 /// Name of the intensity.

@@ -9,7 +9,8 @@ use crate::formats::disc;
 use crate::formats::las::fields::{self, Field};
 use crate::formats::las::header::{Header, Record};
 use crate::formats::las::{extra, survey};
-use crate::formats::point_table::{Column, PointTable};
+use crate::formats::point_columns::Column;
+use crate::formats::point_table::PointTable;
 use crate::formats::source::Parsed;
 use crate::formats::writer::Written;
 use las::point::Format;
@@ -87,7 +88,7 @@ impl<'a> Plan<'a> {
     pub fn of(table: &'a PointTable, storage: Storage, written: &mut Written) -> Parsed<Self> {
         written.leave_out_elements(table);
         let (waves, columns): (Vec<&Column>, Vec<&Column>) =
-            table.columns.iter().partition(|column| WAVES.contains(&column.name.as_str()));
+            table.columns.all.iter().partition(|column| WAVES.contains(&column.name.as_str()));
         written.leave_out(
             waves.iter().map(|column| column.name.clone()).collect(),
             "wave packets are not written",

@@ -3,8 +3,7 @@
 use crate::error::{Error, Result};
 use crate::formats::round_trip::{all, reversed};
 use crate::formats::{
-    Attribute, Contents, DiscProperties, Loaded, PointSource, ReadOptions, Values, Written, read, read_bytes,
-    write,
+    Attribute, Contents, Loaded, PointSource, ReadOptions, Values, Written, read, read_bytes, write,
 };
 use crate::geometry::{
     Clip, ClipLine, Clips, Cloud, Colours, Ellipse, Materials, Model, Primitives, Surfels, Weights,
@@ -33,12 +32,7 @@ fn open(path: &Path) -> File {
 /// Writes a file in a temporary folder.
 fn written(folder: &TempDir, name: &str, from: &File) -> (PathBuf, Written) {
     let path = folder.path().join(name);
-    let contents = Contents {
-        parts: (&from.surfels).into(),
-        inputs: &from.inputs,
-        recoloured: false,
-        discs: DiscProperties::All,
-    };
+    let contents = Contents { inputs: &from.inputs, ..Contents::of(&from.surfels) };
     let written = write(&path, &contents, &()).unwrap();
     (path, written)
 }
@@ -299,13 +293,7 @@ fn what_is_no_point_is_named_or_refused() {
     surfels.materials = Some(Materials { table: vec![material].into(), of: vec![0] });
     let mut model = Model { surfels, primitives };
     let path = folder.path().join("a.laz");
-    let save = |model: &Model| -> Result<Written> {
-        write(
-            &path,
-            &Contents { parts: model.into(), inputs: &[], recoloured: false, discs: DiscProperties::All },
-            &(),
-        )
-    };
+    let save = |model: &Model| -> Result<Written> { write(&path, &Contents::of(model), &()) };
     assert_eq!(
         save(&model).unwrap().left_out,
         ["1 ribbons, 1 triangles, 1 materials: write a .ply file to keep them"]
@@ -323,12 +311,7 @@ fn what_is_no_point_is_named_or_refused() {
 fn errors_name_the_file() {
     let file = ply("x y z", &["0 0 0"]);
     for name in ["/nowhere/a.laz", "/nowhere/a.las"] {
-        let contents = Contents {
-            parts: (&file.surfels).into(),
-            inputs: &file.inputs,
-            recoloured: false,
-            discs: DiscProperties::All,
-        };
+        let contents = Contents { inputs: &file.inputs, ..Contents::of(&file.surfels) };
         let error = write(Path::new(name), &contents, &()).unwrap_err();
         assert!(matches!(error, Error::Io { .. }), "{error}");
         assert!(error.to_string().contains("/nowhere does not exist: create it"), "{error}");

@@ -255,3 +255,53 @@ fn a_texture_is_written_as_its_colours() {
         (None, Some(Colours::Srgb8(vec![[255, 255, 255, 0], [0; 4]])))
     );
 }
+
+#[test]
+fn properties_of_inputs_keep_their_types_and_names() {
+    use crate::formats::round_trip::{all, reversed};
+    use crate::formats::{self, Contents, PointSource};
+    let text = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n\
+                property float nx\nproperty float ny\nproperty float nz\nproperty char temperature\n\
+                property ushort intensity\nproperty uint number\nproperty int change\nproperty short shift\n\
+                property uchar class\nproperty float part\nproperty double gps_time\nproperty list uchar int near\n\
+                end_header\n\
+                0 0 0 0 0 1 -7 40000 4000000000 -2000000000 -300 9 0.25 1e300 1 5\n\
+                1 0 0 0 0 1 7 2 3 4 5 6 nan 0.1 0\n";
+    let (surfels, source, _) = reversed(read_bytes("a.ply", text.as_bytes(), &all()).unwrap());
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("b.ply");
+    let write = |source: &PointSource, surfels: &Surfels| {
+        let inputs = std::slice::from_ref(source);
+        formats::write(&path, &Contents { inputs, ..Contents::of(surfels) }, &()).unwrap()
+    };
+    let written = write(&source, &surfels);
+    let unknown = "near: properties that are lists, or that thinned points and samples of meshes do not have";
+    assert_eq!(written.left_out, [unknown]);
+    let (again, kept, _) = reversed(read(&path, &all(), &()).unwrap());
+    // The surfels are written in reverse order.
+    assert_eq!(again.positions, [surfels.positions[1], surfels.positions[0]]);
+    let numbers = |source: &PointSource| -> Vec<_> {
+        let others =
+            source.attributes.iter().filter(|attribute| !["x", "y", "z"].contains(&attribute.name.as_str()));
+        others
+            .map(|attribute| {
+                (
+                    attribute.name.clone(),
+                    attribute.values.scalar(),
+                    [0, 1].map(|i| attribute.values.get(i).unwrap()),
+                )
+            })
+            .collect()
+    };
+    let expected: Vec<_> =
+        numbers(&source).into_iter().map(|(name, scalar, [a, b])| (name, scalar, [b, a])).collect();
+    assert_eq!(format!("{:?}", numbers(&kept)), format!("{expected:?}"));
+    assert_eq!(expected.len(), 8);
+    let mut odd = source.clone();
+    (odd.attributes[3].name, odd.attributes[4].name) = ("radius".into(), "of scan".into());
+    let written = write(&odd, &surfels);
+    assert_eq!(
+        written.left_out[1],
+        "of scan radius: names that PLY does not hold, which are unique and without spaces"
+    );
+}
