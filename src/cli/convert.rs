@@ -45,6 +45,7 @@ pub fn run(args: &Convert) -> Result<()> {
         inputs: &loaded.inputs,
         recoloured,
         discs: written_properties(args, &loaded),
+        metadata: loaded.metadata,
     };
     let written = formats::write(out, &contents, &*bars)?;
     written.left_out.iter().for_each(|what| log::warn!("{}: left out: {what}", out.display()));

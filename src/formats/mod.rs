@@ -28,6 +28,7 @@ mod gltf;
 pub mod image;
 #[cfg(feature = "las")]
 mod las;
+mod metadata;
 mod meter;
 mod obj;
 #[cfg(feature = "pcd")]
@@ -56,6 +57,7 @@ mod writer;
 
 pub use attributes::{Attribute, Values, WantedAttributes};
 pub use filter::{Filter, FilterCounts, Returns, class_name};
+pub use metadata::Metadata;
 pub use reader::{Inspected, Loaded, ReadOptions, extensions, inspect, levels, read, read_bytes};
 pub use report::{Dropped, Faces, Lines, Report};
 pub use survey::Survey;

@@ -2,6 +2,7 @@
 
 use super::declared::{Element, Encoding};
 use super::filter::FilterCounts;
+use super::metadata::Metadata;
 use super::survey::Survey;
 use super::table::{Layout, Points, Shape};
 use glam::DVec3;
@@ -16,8 +17,10 @@ pub struct Report {
     pub details: Vec<(String, String)>,
     /// Scale, coordinate system and scans, for files that are written from this one.
     pub survey: Survey,
-    /// The up direction of all files of this kind, a unit vector; `None` if the points tell it.
+    /// The up direction, a unit vector: that of the metadata, or else of all files of this kind; `None` if the points tell it.
     pub up: Option<DVec3>,
+    /// What a file tells that [`write`](super::write()) wrote.
+    pub metadata: Metadata,
     /// All declared elements, in order.
     pub elements: Vec<Element>,
     /// Name of the property that is [`Cloud::scalar`](crate::geometry::Cloud::scalar).
@@ -70,6 +73,7 @@ impl Report {
             survey: Survey::default(),
             // That of the cameras which 3D Gaussians are trained with.
             up: gaussians.then_some(DVec3::NEG_Y),
+            metadata: Metadata::default(),
             scalar: layout.scalar_of(element).map(str::to_owned),
             elements: vec![element.clone()],
             understood: names(true),
@@ -88,6 +92,14 @@ impl Report {
             stated: None,
             trailing: 0,
         }
+    }
+
+    /// The report with the metadata of this text, if there is one.
+    pub(super) fn with_metadata(self, text: Option<&str>) -> Self {
+        let metadata = text.map(Metadata::parse).unwrap_or_default();
+        let fact = metadata.text().map(|text| ("metadata".to_owned(), text));
+        let details = self.details.into_iter().chain(fact).collect();
+        Self { up: metadata.up.or(self.up), metadata, details, ..self }
     }
 }
 

@@ -52,9 +52,8 @@ fn is_depth_image(cloud: &Cloud) -> bool {
 
 /// Whether bare points are much lower along z than they are wide. Normals and faces come from models, where y is up.
 fn is_flat(cloud: &Cloud) -> bool {
-    let is_bare = cloud.normals.is_none() && cloud.triangles.is_empty() && !cloud.has_lines();
     let extent = usual_extent(&cloud.positions);
-    is_bare && extent.z < FLAT * extent.x.min(extent.y)
+    cloud.is_bare() && extent.z < FLAT * extent.x.min(extent.y)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Writers of models: one per file format, selected by the extension.
 
 use super::attributes::Attribute;
+use super::metadata::Metadata;
 use super::point_columns::PointColumns;
 #[cfg(any(feature = "e57", feature = "las"))]
 use super::point_table::PointTable;
@@ -40,12 +41,15 @@ pub struct Contents<'a> {
     pub recoloured: bool,
     /// Which properties of the discs are written.
     pub discs: DiscProperties,
+    /// What else the file tells of the points.
+    pub metadata: Metadata,
 }
 
 impl<'a> Contents<'a> {
     /// A model alone, with all that it has.
     pub fn of(parts: impl Into<Parts<'a>>) -> Self {
-        Self { parts: parts.into(), inputs: &[], recoloured: false, discs: DiscProperties::All }
+        let (discs, metadata) = (DiscProperties::All, Metadata::default());
+        Self { parts: parts.into(), inputs: &[], recoloured: false, discs, metadata }
     }
 }
 

@@ -103,6 +103,11 @@ impl Cloud {
         (0..count).map(|i| order[(i * all / count) as usize]).collect()
     }
 
+    /// Whether there are points alone: neither normals nor faces nor lines.
+    pub(crate) fn is_bare(&self) -> bool {
+        self.normals.is_none() && self.triangles.is_empty() && !self.has_lines()
+    }
+
     /// Whether there are ribbons or tubes.
     pub fn has_lines(&self) -> bool {
         !(self.ribbons.is_empty() && self.tubes.is_empty())

@@ -4,6 +4,7 @@
 //! merged.
 
 mod colouring;
+mod part;
 mod preview;
 mod shading;
 mod suggestion;
@@ -16,7 +17,7 @@ pub use suggestion::{Suggestion, Uncoloured};
 
 use crate::estimate::{Estimate, Estimated};
 use crate::formats::{
-    self, Dropped, Filter, FilterCounts, Loaded, PointSource, ReadOptions, Report, WantedAttributes,
+    self, Dropped, Filter, FilterCounts, Loaded, Metadata, PointSource, ReadOptions, Report, WantedAttributes,
 };
 use crate::geometry::{Cloud, Lined, MipMap, Model, ToLines};
 use crate::settings::Settings;
@@ -24,6 +25,7 @@ use crate::settings::Settings;
 use crate::verify::scenes;
 use crate::{Error, Progress, Result, thousands};
 use glam::{DVec3, Vec3};
+use part::Part;
 use std::ffi::OsStr;
 use std::path::Path;
 use std::sync::Arc;
@@ -104,6 +106,8 @@ pub struct LoadedModel {
     pub faces: Vec<u64>,
     /// What each input has beyond the model; the attributes with [`LoadOptions::attributes`].
     pub inputs: Vec<PointSource>,
+    /// What a file that is written from the model tells of it.
+    pub metadata: Metadata,
 }
 
 /// Options and listener of a load.
@@ -112,18 +116,6 @@ struct Load<'a> {
     listener: &'a dyn Listener,
     /// Whether warnings of reading are logged.
     warns: bool,
-}
-
-/// An input that was read.
-struct Part {
-    name: String,
-    cloud: Cloud,
-    /// Whether its faces are rendered, whatever the options say.
-    draws_faces: bool,
-    /// The up direction of its coordinates.
-    up: DVec3,
-    /// Name of the property that is its scalar.
-    scalar: Option<String>,
 }
 
 /// Loads inputs, paths of files or names of built-in scenes, as one model.
@@ -187,6 +179,7 @@ impl Load<'_> {
             let preview = |model| Preview { model, up, suggestion: suggestion.clone() };
             model.into_iter().for_each(|model| self.listener.preview(preview(model)));
         }
+        let is_bare = parts.iter().all(|part| part.is_bare);
         let (model, estimated) = self.merge(parts)?;
         skipped.sort();
         skipped.dedup();
@@ -202,7 +195,9 @@ impl Load<'_> {
             skipped,
             faces,
             inputs: sources,
+            metadata: Metadata::default(),
         };
+        loaded.metadata = loaded.describe(is_bare);
         if let (Some(colouring), None) = (colouring, &loaded.coloured) {
             loaded.coloured = colouring.colour_model(&mut loaded.model, up, self.listener);
         }
@@ -246,7 +241,7 @@ impl Load<'_> {
         #[cfg(feature = "scenes")]
         if let Some(name) = scene(input) {
             let cloud = scene_cloud(name)?;
-            let part = Part { name: name.into(), cloud, draws_faces: true, up: DVec3::Y, scalar: None };
+            let part = Part { draws_faces: true, ..Part::of(name.into(), cloud, DVec3::Y) };
             return Ok((part, PointSource::default(), None));
         }
         let options = ReadOptions {
@@ -269,14 +264,13 @@ impl Load<'_> {
         }
         let (survey, skipped) = (std::mem::take(&mut report.survey), report.skipped.clone());
         let source = PointSource { points, attributes, survey, skipped };
-        let scalar = report.scalar.clone();
         let name = Path::new(input).display().to_string();
         if self.warns {
             warnings::log(&name, &report);
         }
         self.note_filtered(&name, &report);
         let cloud = self.options.points.map(|points| cloud.some(points as usize)).unwrap_or(cloud);
-        Ok((Part { name, cloud, draws_faces: false, up, scalar }, source, Some(report)))
+        Ok((Part::of(name, cloud, up).with(&report), source, Some(report)))
     }
 
     /// Notes how many points of a file the filter leaves out.
@@ -303,19 +297,12 @@ impl Load<'_> {
 
     /// Merges all parts, with one point per voxel.
     fn thin(&self, parts: Vec<Part>, voxel: f64) -> Result<Part> {
-        let name = match &parts[..] {
-            [one] => one.name.clone(),
-            several => format!("{} inputs", several.len()),
-        };
-        let draws_faces = parts.iter().any(|part| part.draws_faces);
-        let (up, scalar) = parts.first().map_or((DVec3::Y, None), |part| (part.up, part.scalar.clone()));
-        let clouds = parts.into_iter().map(|part| part.cloud).collect();
-        let all = Cloud::merge(clouds, Settings::default().lighting.albedo)?;
-        let before = all.len();
-        let cloud = all.thin(voxel).map_err(|error| error.in_input(name.as_str()))?;
+        let all = Part::merge(parts)?;
+        let before = all.cloud.len();
+        let cloud = all.cloud.thin(voxel).map_err(|error| error.in_input(all.name.as_str()))?;
         let [before, after] = [before, cloud.len()].map(|count| thousands(count as u64));
-        self.listener.note(&format!("{name}: {before} points thinned to {after}"));
-        Ok(Part { name, cloud, draws_faces, up, scalar })
+        self.listener.note(&format!("{}: {before} points thinned to {after}", all.name));
+        Ok(Part { cloud, ..all })
     }
 
     /// Estimates each part and merges all to one model.
@@ -343,7 +330,7 @@ impl Load<'_> {
 
     /// Estimates the model of a part.
     fn estimate(&self, part: Part) -> Result<(Model, Estimated)> {
-        let Part { name, cloud, draws_faces, .. } = part;
+        let Part { name, cloud, draws_faces, scattered, .. } = part;
         let cloud = match &self.options.lines {
             Some(how) => self.to_lines(&name, &cloud, how)?,
             None => cloud,
@@ -356,10 +343,13 @@ impl Load<'_> {
         };
         let progress: &dyn Progress = self.listener;
         let made = cloud.into_model(draws_faces || self.draws_faces(), &how, progress);
-        let (model, estimated) = made.map_err(|error| error.in_input(name.as_str()))?;
+        let (model, mut estimated) = made.map_err(|error| error.in_input(name.as_str()))?;
         if let Some(text) = estimated.summary() {
             self.listener.note(&format!("{name}: {text}"));
         }
+        // Points whose normals the file does not have, though it counts them, are estimated again.
+        let known = (scattered * model.surfels.len() as f64).round() as u64;
+        estimated.scattered = estimated.scattered.max(known);
         Ok((model, estimated))
     }
 

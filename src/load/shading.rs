@@ -1,8 +1,8 @@
 //! The shading that shows the shape of what was loaded.
 
 use super::LoadedModel;
-#[cfg(doc)]
 use crate::estimate::Estimated;
+use crate::formats::Metadata;
 use crate::settings::{Settings, Shading};
 
 /// Part of the points above which normals that mean nothing make a lit picture hard to read. It is above a tenth in airborne scans with trees and
@@ -40,6 +40,13 @@ impl LoadedModel {
             false if flat => SuggestedShading { shading: Shading::Lit, ao: Settings::DEFAULT_AO },
             _ => SuggestedShading { shading: Shading::Lit, ao: 0.0 },
         }
+    }
+
+    /// The metadata; `is_bare` tells whether no input has normals of its own, faces or lines.
+    pub(super) fn describe(&self, is_bare: bool) -> Metadata {
+        let Estimated { two_sided, billboards, .. } = self.estimated;
+        let two_sided = two_sided > 0 && two_sided + billboards == self.model.surfels.len() as u64;
+        Metadata { up: Some(self.up), estimated: is_bare, two_sided, scattered: self.scattered() }
     }
 
     /// Part of the surfels whose normals are unlike their neighbours': [`Estimated::scattered`].

@@ -29,7 +29,7 @@ pub struct Suggestion {
 impl Suggestion {
     /// For all parts together; `None` if some have colours, normals or faces.
     pub(super) fn of(parts: &[Part]) -> Option<Self> {
-        if parts.is_empty() || !parts.iter().all(|part| is_bare(&part.cloud)) {
+        if parts.is_empty() || !parts.iter().all(|part| part.is_bare && is_plain(&part.cloud)) {
             return None;
         }
         let name = parts[0].scalar.clone();
@@ -46,9 +46,9 @@ impl Suggestion {
     }
 }
 
-fn is_bare(cloud: &Cloud) -> bool {
-    let is_plain = cloud.colours.is_none() && cloud.texture.is_none() && cloud.materials.is_none();
-    is_plain && cloud.normals.is_none() && cloud.triangles.is_empty() && !cloud.has_lines()
+/// Whether points have no colours.
+fn is_plain(cloud: &Cloud) -> bool {
+    cloud.colours.is_none() && cloud.texture.is_none() && cloud.materials.is_none()
 }
 
 /// Whether the scalar has two different values.

@@ -312,7 +312,7 @@ fn points_are_converted_to_las_laz_and_e57() {
     assert!(run.err.ends_with("d.ply: 60 surfels\n") && !run.err.contains("warning"), "{}", run.err);
     let render = "--color-by classification --reference --size 16x16 -o d.png";
     let run = program.run(&format!("render d.ply {render}"));
-    assert!(run.err.contains("classification: "), "{}", run.err);
+    assert!(run.err.contains("d.ply: z is up") && run.err.contains("classification: "), "{}", run.err);
     let run = program.run("convert a.laz -o e.laz --voxel 5");
     assert!(run.err.contains("surfel: warning: e.laz: left out: "), "{}", run.err);
     let run = program.run("convert a.laz -o f.copc.laz");

@@ -17,8 +17,8 @@ pub struct Convert {
     /// The file to write: .ply, .las, .laz, .copc.laz or .e57
     ///
     /// A PLY file holds position, normal and radius; and where there are any, axes of ellipses, two-sidedness, clip lines, normalization
-    /// weights, tangents, colour, edges and faces. LAS and LAZ files hold points with all properties of the inputs, and normal, radius, axes
-    /// and so on as extra bytes; E57 files hold points with normals, colours, intensities, returns and times. A warning names what is left out.
+    /// weights, tangents, colour, edges, faces and the properties of the inputs. LAS and LAZ files hold points with all properties of the inputs,
+    /// and normal, radius, axes and so on as extra bytes; E57 files hold points with normals, colours, intensities, returns and times. A warning names what is left out.
     #[arg(short, long, value_name = "OUT")]
     pub output: OsString,
     /// Keeps one point per voxel of this side, in the positions' unit, of all inputs together
@@ -50,7 +50,7 @@ pub struct Convert {
     /// What points are coloured by
     #[command(flatten)]
     pub colours: Colours,
-    /// Up direction, for --color-by height [default: 0,0,1 for LAS, LAZ, E57, PTX, STL and wide flat bare points, 0,-1,0 for depth images and 3D Gaussians but SPZ, otherwise 0,1,0]
+    /// Up direction of the written file, and for --color-by height [default: 0,0,1 for LAS, LAZ, E57, PTX, STL and wide flat bare points, 0,-1,0 for depth images and 3D Gaussians but SPZ, otherwise 0,1,0]
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
     pub up: Option<DVec3>,
     /// Prints nothing but warnings and errors

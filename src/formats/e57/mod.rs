@@ -27,6 +27,7 @@ use super::table::{Arrays, Layout, Points, fill};
 use super::{Inspected, Loaded, ReadOptions, Report, WantedAttributes, point_columns};
 use crate::Progress;
 use crate::error::Cause;
+use crate::geometry::Cloud;
 use e57::{E57Reader, PointCloud};
 use glam::DVec3;
 use packets::{Packets, Scratch};
@@ -123,10 +124,21 @@ fn load(
         survey: Survey::of_scans(system, scans.iter().map(ScanSurvey::of).collect()),
         up: Some(DVec3::Z),
         ..Report::of_points(Encoding::Compressed, report_of, layout, &points)
-    };
+    }
+    .with_metadata(metadata(file.xml()));
     let scanners: Vec<_> = scans.iter().map(|scan| (scan.records, position(scan))).collect();
     points.set_scanners(&scanners);
-    Ok(Loaded { cloud: points.cloud, report, attributes })
+    let two_sided = report.metadata.two_sided.then(|| vec![true; points.cloud.len()]);
+    Ok(Loaded { cloud: Cloud { two_sided, ..points.cloud }, report, attributes })
+}
+
+/// What is before and after the text of the metadata in the description of a file.
+const METADATA: [&str; 2] = [r#"<surfel:metadata type="String"><![CDATA["#, "]]></surfel:metadata>"];
+
+/// Text of the metadata, if the description of the file has any.
+fn metadata(description: &str) -> Option<&str> {
+    let (_, text) = description.split_once(METADATA[0])?;
+    text.split_once(METADATA[1]).map(|(text, _)| text)
 }
 
 /// Consecutive points of a scan, read by one thread.

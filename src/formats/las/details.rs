@@ -1,6 +1,8 @@
 //! What a header tells about the file.
 
 use super::header::{Header, text};
+use super::survey::METADATA;
+use crate::formats::metadata::OWNER;
 
 /// Facts by name: version, point format, where it comes from, its coordinate system, its points by return.
 pub fn of(header: &Header) -> Vec<(String, String)> {
@@ -41,6 +43,11 @@ fn returns(header: &Header) -> String {
 /// The coordinate system as well-known text, if the file has it.
 pub fn well_known_text(header: &Header) -> Option<String> {
     header.record("LASF_Projection", 2112).map(text)
+}
+
+/// Text of the metadata, if the file has any.
+pub fn metadata(header: &Header) -> Option<String> {
+    header.record(OWNER, METADATA).map(text)
 }
 
 /// Well-known text, or the numbers and names of GeoTIFF keys.

@@ -140,7 +140,8 @@ fn load(table: &read::Table, encoding: Encoding, progress: &dyn Progress) -> Par
         survey: WholeSurvey::of_las(details::well_known_text(table.header), Survey::of(table.header)),
         up: Some(glam::DVec3::Z),
         ..Report::of_points(encoding, table.element, table.layout, &points)
-    };
+    }
+    .with_metadata(details::metadata(table.header).as_deref());
     let cloud = Cloud { colours: points.cloud.colours.and_then(colours), ..points.cloud };
     Ok(Loaded { cloud, report, attributes })
 }

@@ -1,6 +1,7 @@
 //! What a LAS file tells of its points as a whole.
 
 use super::header::{Header, Record};
+use crate::formats::metadata::OWNER;
 use las::raw;
 use laz::LazVlr;
 
@@ -24,11 +25,17 @@ impl Survey {
     }
 }
 
-/// Whether a record describes how the points are stored: compression, extra bytes, wave packets (100 to 354), COPC's octree, or nothing any
-/// more (superseded).
+/// Number of the record of [`Metadata`](crate::formats::Metadata).
+pub const METADATA: u16 = 1;
+
+/// Whether a record is of the points as they are stored: compression, extra bytes, wave packets (100 to 354), COPC's octree, metadata of
+/// normals, or nothing any more (superseded).
 fn is_of_storage(Record { user, id, .. }: &Record) -> bool {
     let is = |name: &str| user.eq_ignore_ascii_case(name);
-    is(LazVlr::USER_ID) || is("copc") || is("LASF_Spec") && matches!(id, 4 | 7 | 100..=354 | 65535)
+    is(LazVlr::USER_ID)
+        || is("copc")
+        || is(OWNER)
+        || is("LASF_Spec") && matches!(id, 4 | 7 | 100..=354 | 65535)
 }
 
 /// Bits of the global encoding that do not depend on how the points are stored: GPS time, synthetic returns, coordinate system.

@@ -2,6 +2,7 @@
 
 use super::Parsed;
 use crate::formats::declared::{Element, Encoding, Kind, Property, Scalar};
+use crate::formats::metadata::OWNER;
 use crate::formats::quoted::quoted;
 use std::collections::HashSet;
 
@@ -20,6 +21,8 @@ pub(super) struct Header {
     pub grid: [Option<u64>; 2],
     /// Name of the first texture, from `comment TextureFile`.
     pub texture: Option<String>,
+    /// Text of the [`Metadata`](crate::formats::Metadata), from `comment surfel`.
+    pub metadata: Option<String>,
 }
 
 /// Whether a file with this beginning is a PLY file.
@@ -31,7 +34,8 @@ pub(super) fn is_ply(bytes: &[u8]) -> bool {
 pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
     let mut lines = Lines::new(bytes);
     lines.first();
-    let (mut encoding, mut elements, mut grid, mut texture) = (None, Vec::new(), [None; 2], None);
+    let (mut encoding, mut elements, mut grid) = (None, Vec::new(), [None; 2]);
+    let (mut texture, mut metadata) = (None, None);
     let mut names = HashSet::new();
     loop {
         let line = lines.next()?;
@@ -39,7 +43,8 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
         let done = match keyword {
             b"" => Ok(()),
             b"comment" => {
-                parse_comment(line, &mut texture);
+                parse_comment(line, "TextureFile", &mut texture);
+                parse_comment(line, OWNER, &mut metadata);
                 Ok(())
             }
             b"obj_info" => {
@@ -60,16 +65,16 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
     }
     let encoding =
         encoding.ok_or("the header has no `format` line: write the file again with a complete header")?;
-    Ok(Header { encoding, elements, payload: lines.at, grid, texture })
+    Ok(Header { encoding, elements, payload: lines.at, grid, texture, metadata })
 }
 
-/// Reads the texture name from a comment; other comments are ignored. A name may contain spaces.
-fn parse_comment(line: &[u8], texture: &mut Option<String>) {
+/// Reads the text after a keyword from a comment, unless an earlier comment has it; others are ignored. It may contain spaces.
+fn parse_comment(line: &[u8], keyword: &str, found: &mut Option<String>) {
     let text = String::from_utf8_lossy(line);
-    let name = text.trim_start_matches("comment").trim_start().strip_prefix("TextureFile");
-    let name = name.filter(|name| name.starts_with(char::is_whitespace)).map(str::trim);
-    if let (None, Some(name)) = (&texture, name.filter(|name| !name.is_empty())) {
-        *texture = Some(name.into());
+    let text = text.trim_start_matches("comment").trim_start().strip_prefix(keyword);
+    let text = text.filter(|text| text.starts_with(char::is_whitespace)).map(str::trim);
+    if let (None, Some(text)) = (&found, text.filter(|text| !text.is_empty())) {
+        *found = Some(text.into());
     }
 }
 

@@ -35,6 +35,8 @@
 //! | `range_grid` | list `vertex_indices` of no vertex or one; `obj_info num_cols`, `num_rows` | triangles between neighbours, where the surface is not torn; [`View::Towards`](crate::geometry::View::Towards) +z |
 //! | `camera` | `view_px view_py view_pz` | [`View::From`](crate::geometry::View::From); all 0, which is what some programs write of any cloud, is not known |
 //!
+//! `comment surfel` followed by [`Metadata`](crate::formats::Metadata) tells the up direction and where the normals come from.
+//!
 //! Triangles are kept only if some point needs a normal or radius from them, if there are lines, or if [`ReadOptions`] request them.
 //! Skipped elements are validated, too: a truncated file is an error, and bytes after its end are counted.
 //!
@@ -165,6 +167,7 @@ fn find_texture(
 
 fn report(header: Header, vertex: usize, layout: &Layout, contents: &Contents) -> Report {
     let skipped = header.elements.iter().zip(&contents.used).filter(|(_, used)| !**used);
+    let metadata = header.metadata.as_deref();
     Report {
         skipped_elements: skipped.map(|(element, _)| element.name.clone()).collect(),
         materials_dropped: contents.materials.dropped(),
@@ -175,4 +178,5 @@ fn report(header: Header, vertex: usize, layout: &Layout, contents: &Contents) -
         elements: header.elements.clone(),
         ..Report::of_points(header.encoding, &header.elements[vertex], layout, &contents.points)
     }
+    .with_metadata(metadata)
 }

@@ -7,6 +7,7 @@ use super::scalars::Scalars;
 use crate::Progress;
 use crate::error::{Error, Result};
 use crate::formats::declared::Scalar;
+use crate::formats::metadata::{Metadata, OWNER};
 use crate::formats::reader::Reader;
 use crate::formats::table::columns::{MATERIAL_NAME, TANGENT_NAMES};
 use crate::formats::writer::{Contents, DiscProperties, Writer as FileWriter, Written};
@@ -28,7 +29,8 @@ use std::path::Path;
 /// weights surfel_weight0 to surfel_weight3 as float, all 0 without; for tubes, their tangents tx ty tz as float, with nx ny nz 0; red
 /// green blue as uchar if sRGB-encoded, as float if linear, of a texture its colours at the vertices; for materials, material_index as int,
 /// −1 without, and an element material with specular_red specular_green specular_blue and specular_power as float, those of the surfels
-/// first. [`formats::write`](crate::formats::write()) adds the properties of the inputs, with their own names and types.
+/// first. [`formats::write`](crate::formats::write()) adds the properties of the inputs, with their own names and types,
+/// and [`Metadata`].
 ///
 /// The surfels come first, then the vertices that lines and triangles use, in order. For lines, an element edge has vertex1 and vertex2
 /// and, as uchar, tube: ribbons first, then tubes. For triangles, an element face has the list vertex_indices. If only surfels or only
@@ -88,11 +90,12 @@ pub(super) struct FileContents<'a> {
     materials: Option<Materials>,
     /// Properties of the inputs.
     pub scalars: Scalars<'a>,
+    metadata: Metadata,
 }
 
 impl<'a> FileContents<'a> {
     fn new(contents: &Contents<'a>) -> Result<Self> {
-        let Contents { parts, discs, .. } = *contents;
+        let Contents { parts, discs, metadata, .. } = *contents;
         let none = Primitives::default();
         let primitives = parts.primitives.unwrap_or(&none);
         let (mut tangent, mut normal) = (vec![false; primitives.len()], vec![false; primitives.len()]);
@@ -115,7 +118,8 @@ impl<'a> FileContents<'a> {
         ])?;
         let baked = [of_surfels, of_vertices];
         let scalars = Scalars::new(contents);
-        let mut new = Self { parts, discs, vertices, place, tangent, normal, baked, materials, scalars };
+        let mut new =
+            Self { parts, discs, vertices, place, tangent, normal, baked, materials, scalars, metadata };
         let own = vertex(&new);
         new.scalars.keep(&own);
         Ok(new)
@@ -156,6 +160,7 @@ fn records(out: &mut impl Write, contents: &FileContents) -> io::Result<()> {
     let material = material(contents);
     let mut header = Header::new();
     header.encoding = Encoding::BinaryLittleEndian;
+    header.comments.extend(contents.metadata.text().map(|text| format!("{OWNER} {text}")));
     let others = [&edge, &face, &material].into_iter().filter(|element| element.count > 0);
     let there = [&vertex].into_iter().chain(others);
     there.for_each(|element| header.elements.add(element.clone()));

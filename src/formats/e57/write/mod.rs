@@ -7,11 +7,12 @@ mod fields;
 mod tests;
 
 use super::scan::SCAN;
-use super::{E57, ScanSurvey};
+use super::{E57, METADATA, ScanSurvey};
 use crate::Progress;
 use crate::error::Result;
 use crate::formats::atomic;
 use crate::formats::disc;
+use crate::formats::metadata::OWNER;
 use crate::formats::meter::Meter;
 use crate::formats::point_columns::Column;
 use crate::formats::point_table::PointTable;
@@ -27,6 +28,9 @@ use std::path::Path;
 
 /// Name and address of the extension of surface normals.
 const NORMALS: [&str; 2] = ["nor", "http://www.libe57.org/E57_NOR_surface_normals.txt"];
+
+/// Name and address of the extension that the metadata are in.
+const OWN: [&str; 2] = [OWNER, "urn:surfel:metadata"];
 
 /// Rows between two reports of progress.
 const ROWS: usize = 1 << 14;
@@ -106,7 +110,9 @@ fn write(file: &File, table: &PointTable, all: &[Group], fields: &[Fields], mete
         guid(xxhash_rust::xxh3::xxh3_128_with_seed(positions, seed))
     };
     let mut writer = E57Writer::new(file, &digest(0)).map_err(failed)?;
-    writer.register_extension(Extension::new(NORMALS[0], NORMALS[1])).map_err(failed)?;
+    for [name, address] in [NORMALS, OWN] {
+        writer.register_extension(Extension::new(name, address)).map_err(failed)?;
+    }
     let system = table.contents.inputs.iter().find_map(|input| input.survey.coordinate_system());
     writer.set_coordinate_metadata(system.map(text));
     for (number, (group, fields)) in (1..).zip(all.iter().zip(fields)) {
@@ -132,7 +138,10 @@ fn write(file: &File, table: &PointTable, all: &[Group], fields: &[Fields], mete
         }
         scan.finalize().map_err(failed)?;
     }
-    writer.finalize().map_err(failed)
+    let metadata = table.contents.metadata.text();
+    let metadata = metadata.map(|text| format!("{}{text}{}\n</e57Root>", METADATA[0], METADATA[1]));
+    let add = |xml: String| Ok(metadata.iter().fold(xml, |xml, end| xml.replace("</e57Root>", end)));
+    writer.finalize_customized_xml(add).map_err(failed)
 }
 
 /// A digest in the form of a GUID.

@@ -105,6 +105,7 @@ impl<'a> Plan<'a> {
         if in_octree {
             records::say_system(&records, written);
         }
+        records.extend(records::of_metadata(&table.contents.metadata));
         let (standard, _) = fields_of(number, &[])?;
         let extras = extras(table, &mapped, &standard, written);
         if !extras.is_empty() {

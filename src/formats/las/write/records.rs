@@ -2,6 +2,8 @@
 
 use crate::formats::las::copc::{INFO, Info, USER};
 use crate::formats::las::header::Record;
+use crate::formats::las::survey::METADATA;
+use crate::formats::metadata::{Metadata, OWNER};
 use crate::formats::writer::{PointSource, Written};
 use las::raw;
 use las::raw::vlr::RecordLength;
@@ -67,6 +69,12 @@ pub fn of_compression(compression: &LazVlr) -> std::io::Result<Record> {
 /// The record that describes an octree.
 pub fn of_octree(info: Info) -> Record {
     Record { user: USER.into(), id: INFO, description: "COPC info VLR".into(), data: info.to_bytes() }
+}
+
+/// The record of the metadata, if there is any.
+pub fn of_metadata(metadata: &Metadata) -> Option<Record> {
+    let description = "up direction, source of normals".into();
+    metadata.text().map(|text| Record { user: OWNER.into(), id: METADATA, description, data: text.into() })
 }
 
 /// Notes a coordinate system that a COPC file should have as well-known text, and has not.
