@@ -31,7 +31,7 @@ pub fn run(args: &Convert) -> Result<()> {
         colouring: args.colours.colouring()?,
         up: args.up,
         texture: args.colours.texture()?,
-        attributes: true,
+        attributes: formats::wanted_attributes(out),
         ..Default::default()
     };
     let mut loaded = load(&args.inputs, &options, &*bars)?;

@@ -11,7 +11,9 @@ pub enum WantedAttributes {
     None,
     /// Those with these names that the file has.
     Named(Vec<String>),
-    /// The coordinates and colours of the file, and all properties that a cloud does not hold.
+    /// All properties that a cloud does not hold.
+    Others,
+    /// These, and the coordinates and colours of the file.
     All,
 }
 

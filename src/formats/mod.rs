@@ -62,7 +62,8 @@ pub use reader::{Inspected, Loaded, ReadOptions, extensions, inspect, levels, re
 pub use report::{Dropped, Faces, Lines, Report};
 pub use survey::Survey;
 pub use writer::{
-    Contents, DiscProperties, PointSource, Written, check_writable, writable_extensions, write,
+    Contents, DiscProperties, PointSource, Written, check_writable, wanted_attributes, writable_extensions,
+    write,
 };
 
 use crate::error::{Error, Result};

@@ -1,6 +1,6 @@
 //! Writers of models: one per file format, selected by the extension.
 
-use super::attributes::Attribute;
+use super::attributes::{Attribute, WantedAttributes};
 use super::metadata::Metadata;
 use super::point_columns::PointColumns;
 #[cfg(any(feature = "e57", feature = "las"))]
@@ -151,6 +151,14 @@ pub fn write(path: &Path, contents: &Contents<'_>, progress: &dyn Progress) -> R
 pub fn check_writable(path: &Path) -> Result<()> {
     writer_of(path)?;
     atomic::check(path)
+}
+
+/// The attributes of the inputs that files with this extension have.
+pub fn wanted_attributes(path: &Path) -> WantedAttributes {
+    match path.extension().is_some_and(|own| own.eq_ignore_ascii_case("ply")) {
+        true => WantedAttributes::Others,
+        false => WantedAttributes::All,
+    }
 }
 
 /// Extensions of all formats that are written, in lower case.

@@ -60,8 +60,8 @@ pub struct LoadOptions {
     pub up: Option<DVec3>,
     /// Texture of the files' texture coordinates, instead of the one that they name.
     pub texture: Option<Arc<MipMap>>,
-    /// Whether the points' attributes and indices are kept, for a file of points that is written from them. Thinning drops them.
-    pub attributes: bool,
+    /// Which attributes of the points are kept, with their indices, for a file that is written from them. Thinning drops them.
+    pub attributes: WantedAttributes,
 }
 
 /// Receives the progress of a load, notes on it, and a preview.
@@ -253,13 +253,13 @@ impl Load<'_> {
             columns: self.options.columns.clone(),
             triangles: self.draws_faces(),
             texture: self.options.texture.clone(),
-            attributes: if self.keeps_attributes() { WantedAttributes::All } else { WantedAttributes::None },
+            attributes: self.wanted_attributes(),
         };
         let loaded = formats::read(Path::new(input), &options, self.listener)?;
         let up = loaded.up();
         let Loaded { mut cloud, mut report, attributes } = loaded;
         let points = cloud.len();
-        if self.keeps_attributes() {
+        if self.wanted_attributes() == WantedAttributes::All || !attributes.is_empty() {
             cloud.point_indices = Some(indices(first, points)?);
         }
         let (survey, skipped) = (std::mem::take(&mut report.survey), report.skipped.clone());
@@ -290,9 +290,9 @@ impl Load<'_> {
         }
     }
 
-    /// Whether attributes and indices of the points are read: means of several points have none.
-    fn keeps_attributes(&self) -> bool {
-        self.options.attributes && self.options.voxel.is_none()
+    /// Which attributes of the points are read: means of several points have none.
+    fn wanted_attributes(&self) -> WantedAttributes {
+        self.options.voxel.map_or(self.options.attributes.clone(), |_| WantedAttributes::None)
     }
 
     /// Merges all parts, with one point per voxel.

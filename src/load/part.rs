@@ -56,7 +56,7 @@ impl Part {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::{self, Contents};
+    use crate::formats::{self, Contents, WantedAttributes};
     use crate::load::{LoadOptions, LoadedModel, SuggestedShading, Suggestion, Uncoloured, load};
     use crate::settings::Shading;
     use std::path::Path;
@@ -68,7 +68,12 @@ mod tests {
     }
 
     fn open(path: &Path, uncoloured: Uncoloured) -> LoadedModel {
-        load(&[path], &LoadOptions { uncoloured, attributes: true, ..Default::default() }, &()).unwrap()
+        load(
+            &[path],
+            &LoadOptions { uncoloured, attributes: WantedAttributes::All, ..Default::default() },
+            &(),
+        )
+        .unwrap()
     }
 
     /// Points in a flat box, on no surface, with other numbers after their coordinates.

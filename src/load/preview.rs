@@ -2,6 +2,7 @@
 
 use super::{Colouring, Listener, Load, LoadOptions, LoadedModel, Part, Suggestion};
 use crate::estimate::Estimate;
+use crate::formats::WantedAttributes;
 use crate::geometry::{Cloud, Model};
 use crate::settings::Settings;
 use crate::{Progress, formats};
@@ -59,7 +60,7 @@ impl Load<'_> {
         let options = LoadOptions {
             points: Some(PREVIEW.div_ceil(inputs.len()) as u64),
             estimate: self.quick(),
-            attributes: false,
+            attributes: WantedAttributes::None,
             ..self.options.clone()
         };
         let coarse = Load { options: &options, listener: &Silent(self.listener), warns: false };

@@ -208,6 +208,7 @@ impl Layout {
         let is_wanted = |index: &usize| match wanted {
             WantedAttributes::None => false,
             WantedAttributes::Named(names) => names.contains(&properties[*index].name),
+            WantedAttributes::Others => !self.columns.contains(&Some(*index)),
             WantedAttributes::All => !is_held(index),
         };
         let scalar = |index: usize| match properties[index].kind {
