@@ -37,6 +37,7 @@ mod summary;
 #[cfg(feature = "truth")]
 mod truth;
 mod turntable;
+mod undrawn;
 mod values;
 #[cfg(feature = "viewer")]
 mod view;

@@ -4,7 +4,7 @@ use super::args::{ColorBar, PassTimes, Render};
 use super::camera::{self, Room};
 use super::cut::{self, Cut};
 use super::report::{Gpu, HalfError, Report};
-use super::{files, progress, reference, summary, turntable, vulkan};
+use super::{files, progress, reference, summary, turntable, undrawn, vulkan};
 use std::path::Path;
 use surfel::embed::Measured;
 use surfel::estimate::Estimate;
@@ -115,11 +115,8 @@ pub fn run(args: &Render) -> Result<()> {
     let bar = colour_bar(args, loaded.coloured.as_ref(), settings.shading, &out)?;
     let room = Room { size: args.size, bar: bar.as_ref().map_or(0, |bar| bar.width(args.size)) };
     let (pose, camera) = camera::make(&args.camera, file, framed.as_ref().unwrap_or(&extent), up, room)?;
-    if let Some(note) =
-        summary::culled_backs(&loaded.model.surfels, &camera, &settings).filter(|_| !args.quiet)
-    {
-        progress::say(&note);
-    }
+    let backs = undrawn::culled_backs(&loaded.model.surfels, &camera, &settings);
+    backs.iter().filter(|_| !args.quiet).for_each(|note| progress::say(note));
     let contents = summary::parts(&loaded.model);
     let has_levels = !octree && (settings.lod > 0.0 || settings.max_points.is_some());
     let mut points = || std::mem::take(&mut loaded.model.surfels);
@@ -140,6 +137,11 @@ pub fn run(args: &Render) -> Result<()> {
     } else {
         vulkan::render(&task, &device, &args.backend, wanted)?
     };
+    let is_reported = backs.is_some();
+    let empty = || undrawn::empty_picture(&outcome.picture, &task, &extent.bounds(), &given(args));
+    if let Some(warning) = (!is_reported).then(empty).flatten() {
+        log::warn!("{warning}");
+    }
     if !out.is_png() {
         keep_layers(&mut outcome.picture, task.layers);
     }
@@ -168,6 +170,24 @@ pub fn run(args: &Render) -> Result<()> {
     }
     print_summary(args, &contents, &outcome);
     Ok(())
+}
+
+/// The options that may be the cause of an empty picture.
+fn given(args: &Render) -> undrawn::Given {
+    let of = |options: &[(bool, &'static str)]| -> Vec<&'static str> {
+        options.iter().filter(|(is_given, _)| *is_given).map(|(_, name)| *name).collect()
+    };
+    let (camera, points) = (&args.camera, &args.points);
+    undrawn::Given {
+        camera: of(&[
+            (camera.file.is_some(), "--camera"),
+            (camera.eye.is_some(), "--eye"),
+            (camera.target.is_some(), "--target"),
+        ]),
+        radius: of(&[(points.radius.is_some(), "--radius"), (points.radius_scale != 1.0, "--radius-scale")])
+            .pop(),
+        several: args.inputs.len() > 1,
+    }
 }
 
 /// The chosen method, or else the default one for the model. Fails if the method cannot render the model.

@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 use std::path::Path;
-use surfel::geometry::{Camera, Model, Surfels};
+use surfel::geometry::Model;
 use surfel::load::LoadedModel;
-use surfel::settings::{Cull, Shading};
-use surfel::{Settings, thousands};
+use surfel::settings::Shading;
+use surfel::thousands;
 
 /// Parts of a model: `5 surfels, 2 ribbons`.
 pub fn parts(Model { surfels, primitives }: &Model) -> String {
@@ -62,30 +62,4 @@ pub fn assumptions(input: &Path, given: Given, loaded: &LoadedModel) -> Vec<Stri
         )
     });
     up.into_iter().chain(colours).chain(shading).chain(ao).collect()
-}
-
-/// Part of the surfels above which their culling is reported.
-const MANY: f64 = 0.9;
-
-/// A line for the user, if nearly all surfels face away from the camera and are therefore not drawn.
-pub fn culled_backs(surfels: &Surfels, camera: &Camera, settings: &Settings) -> Option<String> {
-    let projection = camera.projection().ok().filter(|_| settings.cull == Cull::Back)?;
-    let (eye, forward) =
-        (camera.view.inverse().w_axis.truncate(), projection.forward * camera.view.row(2).truncate());
-    let is_two_sided = |i: usize| surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[i]);
-    let is_back = |&i: &usize| {
-        let ray = if projection.perspective {
-            surfels.positions[i].as_dvec3() + surfels.origin - eye
-        } else {
-            forward
-        };
-        ray.dot(surfels.normals[i].as_dvec3()) >= 0.0 && !is_two_sided(i) && !surfels.is_billboard(i)
-    };
-    let part = (0..surfels.len()).filter(is_back).count() as f64 / surfels.len().max(1) as f64;
-    (part > MANY).then(|| {
-        format!(
-            "{:.0} % of the surfels face away from the camera and are not drawn: give --cull none, or an --eye on their other side",
-            100.0 * part
-        )
-    })
 }

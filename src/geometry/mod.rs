@@ -56,6 +56,8 @@ pub use surfels::{Colours, Ellipse, Surfels};
 pub use texture::{MipMap, Texture};
 #[cfg(feature = "estimate")]
 pub(crate) use texture_detail::TextureDetail;
+#[cfg(all(feature = "estimate", feature = "io"))]
+pub(crate) use usual_extent::usual_box;
 #[cfg(any(feature = "estimate", feature = "io"))]
 pub(crate) use usual_extent::usual_extent;
 pub(crate) use valid::is_unit;

@@ -160,6 +160,9 @@ impl Load<'_> {
             }
             parts.push(part);
         }
+        if self.warns {
+            warnings::log_apart(&parts);
+        }
         if let Some(voxel) = self.options.voxel {
             parts = vec![self.thin(parts, voxel)?];
         }

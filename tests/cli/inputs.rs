@@ -164,3 +164,40 @@ fn a_scan_that_is_culled_from_behind_is_reported() {
     let run = program.run("render scan.ply -o a.png --size 16x16 --reference --method pull-push");
     assert!(!run.err.contains("face away"), "{}", run.err);
 }
+
+#[test]
+fn an_empty_picture_has_its_cause() {
+    let program = Program::new();
+    let grid: Vec<String> = (0..25).map(|i| format!("{} {} 700 0 0 1 1", 500 + i % 5, 900 + i / 5)).collect();
+    program.write("a.ply", surfels(&grid.iter().map(String::as_str).collect::<Vec<_>>()));
+    let warning = |options: &str| {
+        let run = program.run(&format!("render a.ply -o a.png --size 240x160 --reference -q {options}"));
+        assert_eq!(run.code, 0, "{}", run.err);
+        run.err
+    };
+    assert_eq!(warning(""), "");
+    let place = "the scene is around 502, 902, 700 and 6 wide, the eye is at 0, 0, 500: leave out --eye and --target, or give them in";
+    let text = warning("--eye 0,0,500 --target 0,0,0");
+    assert!(
+        text.starts_with("surfel: warning: no surfel is in the picture: ") && text.contains(place),
+        "{text}"
+    );
+    let white = warning("--eye 0,0,500 --target 0,0,0 --background white");
+    assert_eq!(white, text);
+    let small = warning("--radius 1e-20");
+    assert!(
+        small.contains("px wide in the picture: ")
+            && small.contains("leave out --radius, or give a larger one"),
+        "{small}"
+    );
+    let far = warning("--eye 502,902,2000");
+    assert!(
+        far.contains("the scene has ")
+            && far.contains(" % of the picture: ")
+            && far.contains("leave out --eye, or give it in the file's coordinates"),
+        "{far}"
+    );
+    program.write("b.ply", surfels(&["0 0 0 0 0 1 1", "1 0 0 0 0 1 1", "0 1 0 0 0 1 1"]));
+    let run = program.run("render a.ply b.ply -o a.png --size 48x32 --reference -q");
+    assert!(run.err.contains("a.ply and b.ply are 310 times their width apart"), "{}", run.err);
+}
