@@ -82,6 +82,11 @@ impl Cloud {
         self.points(&kept).without_sizes()
     }
 
+    /// The cloud itself if it has at most `count` points, otherwise [`some`](Self::some) of it.
+    pub fn at_most(self, count: u64) -> Self {
+        if self.len() as u64 <= count { self } else { self.some(count as usize) }
+    }
+
     /// Some of many points, without the radii, ellipses, curvatures, clips, weights and tangents of all, because these belong to the denser
     /// points: larger discs reach other edges.
     pub(crate) fn without_sizes(self) -> Self {

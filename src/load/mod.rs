@@ -47,7 +47,7 @@ pub struct LoadOptions {
     pub lines: Option<ToLines>,
     /// Tolerance of the simplification of lines, in the positions' unit; `None` keeps all vertices.
     pub simplify: Option<f64>,
-    /// Number of points kept of each file, evenly spread, without lines and faces; `None` keeps all. Of a file with
+    /// Number of points kept of each file that has more, evenly spread, without lines and faces; `None` keeps all. Of a file with
     /// [levels](formats::levels) only the coarser ones are read, as many as it takes.
     pub points: Option<u64>,
     /// Side of the voxels that keep one point each, in the positions' unit; `None` keeps all points.
@@ -272,7 +272,10 @@ impl Load<'_> {
             warnings::log(&name, &report);
         }
         self.note_filtered(&name, &report);
-        let cloud = self.options.points.map(|points| cloud.some(points as usize)).unwrap_or(cloud);
+        let cloud = match self.options.points {
+            Some(points) => cloud.at_most(points),
+            None => cloud,
+        };
         Ok((Part::of(name, cloud, up).with(&report), source, Some(report)))
     }
 

@@ -201,3 +201,21 @@ fn an_empty_picture_has_its_cause() {
     let run = program.run("render a.ply b.ply -o a.png --size 48x32 --reference -q");
     assert!(run.err.contains("a.ply and b.ply are 310 times their width apart"), "{}", run.err);
 }
+
+#[test]
+fn a_file_of_few_points_is_read_whole() {
+    let program = Program::new();
+    let properties = ["x", "y", "z"].map(|name| format!("property float {name}\n")).concat();
+    let faces = "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+    let rows = "0 0 0\n1 0 0\n1 1 0.1\n0 1 0\n3 0 1 2\n3 0 2 3\n";
+    program.write("a.ply", format!("ply\nformat ascii 1.0\nelement vertex 4\n{properties}{faces}{rows}"));
+    let info = |options: &str| program.run(&format!("info a.ply --estimate {options}")).text().to_owned();
+    assert!(info("").contains("from faces"), "{}", info(""));
+    let same = |options: &str| assert_eq!(info(options), info(""), "{options}");
+    ["--points 4", "--points 1000000000"].into_iter().for_each(same);
+    let render = |options: &str| {
+        program.run(&format!("render a.ply -o a.png --size 24x24 --reference -q {options}")).text();
+        program.png("a.png")
+    };
+    assert!(render("--points 4") == render(""));
+}

@@ -51,7 +51,7 @@ impl Input {
         let Loaded { cloud, report, .. } = loaded;
         let bounds = bounds::of(&cloud, &report.elements);
         let cloud = match args.points.points {
-            Some(points) => cloud.some(points as usize),
+            Some(points) => cloud.at_most(points),
             None => cloud,
         };
         let (name, polygons) = (path.display().to_string(), args.points.polygons);
