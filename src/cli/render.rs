@@ -109,7 +109,7 @@ pub fn run(args: &Render) -> Result<()> {
         summary::assumptions(input, given, &loaded).iter().for_each(|line| progress::say(line));
     }
     let extent = Extent::of(&loaded.model);
-    let extent = extent.ok_or_else(|| Error::Usage("the inputs hold nothing that can be drawn".into()))?;
+    let extent = extent.ok_or_else(|| undrawn::nothing(&names(args), &loaded.model))?;
     let (middle, up) = (extent.centre(), loaded.up);
     let framed = args.turntable.map(|_| extent.turned_about(middle, up));
     let bar = colour_bar(args, loaded.coloured.as_ref(), settings.shading, &out)?;
@@ -170,6 +170,12 @@ pub fn run(args: &Render) -> Result<()> {
     }
     print_summary(args, &contents, &outcome);
     Ok(())
+}
+
+/// The inputs, in words.
+fn names(args: &Render) -> String {
+    let names: Vec<String> = args.inputs.iter().map(|input| input.display().to_string()).collect();
+    names.join(", ")
 }
 
 /// The options that may be the cause of an empty picture.

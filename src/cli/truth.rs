@@ -6,6 +6,7 @@ use super::files::cache_folder;
 use super::mesh;
 use super::progress::{self, Silent};
 use super::render::keep_layers;
+use super::undrawn;
 use glam::DVec3;
 use std::path::Path;
 use surfel::formats::image::{Output, write};
@@ -52,7 +53,8 @@ fn extent(args: &Truth, up: Option<DVec3>, progress: &dyn Progress) -> Result<(E
     let input = std::slice::from_ref(&args.input);
     let loaded = load(input, &LoadOptions { up, ..Default::default() }, &Silent(progress))?;
     let extent = Extent::of(&loaded.model);
-    Ok((extent.ok_or_else(|| Error::Usage("the input holds no points".into()))?, loaded.up))
+    let name = args.input.display().to_string();
+    Ok((extent.ok_or_else(|| undrawn::nothing(&name, &loaded.model))?, loaded.up))
 }
 
 /// Traces a scene, or reads its picture from the cache; `name` is its key.

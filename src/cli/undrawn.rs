@@ -1,10 +1,11 @@
 //! What is not drawn of a scene, why, and what to do about it.
 
 use super::render::Task;
+use super::summary;
 use glam::{DVec2, DVec3, DVec4};
-use surfel::geometry::{Bounds, Camera, Parts, Surfels};
+use surfel::geometry::{Bounds, Camera, Model, Parts, Surfels};
 use surfel::settings::Cull;
-use surfel::{Picture, Settings, thousands};
+use surfel::{Error, Picture, Settings, thousands};
 
 /// Part of the surfels above which their culling is reported.
 const MANY: f64 = 0.9;
@@ -14,6 +15,33 @@ const FEW: f64 = 1e-3;
 const COVERED: f32 = 2e-3;
 /// Diameter below which surfels are too small to be seen, px.
 const SMALL: f64 = 0.1;
+
+/// The error for inputs of which nothing can be drawn.
+pub fn nothing(name: &str, Model { surfels, primitives }: &Model) -> Error {
+    let largest = Surfels::LARGEST;
+    let far = surfels.positions.iter().filter(|at| at.abs().max_element() > largest).count();
+    let large = surfels.radii.iter().filter(|radius| **radius > largest).count();
+    let all = thousands(surfels.len() as u64);
+    let why = match surfels.len() {
+        0 if primitives.is_empty() => "it holds nothing that can be drawn: give a file with points".into(),
+        0 => format!(
+            "all {} are invalid: coordinates, directions or radii are not finite or exceed {largest:e}: scale the file",
+            summary::parts(&Model { surfels: Surfels::default(), primitives: primitives.clone() })
+        ),
+        _ if 2 * far >= surfels.len() => {
+            format!("all {all} surfels are invalid: coordinates exceed {largest:e}: scale the file")
+        }
+        _ if 2 * large >= surfels.len() => {
+            format!(
+                "all {all} surfels are invalid: radii exceed {largest:e}: give smaller ones, as by --radius"
+            )
+        }
+        _ => format!(
+            "all {all} surfels are invalid: a radius or a normal is 0 or not finite: write the file again"
+        ),
+    };
+    Error::input(name, why)
+}
 
 /// A line for the user, if nearly all surfels face away from the camera and are therefore not drawn.
 pub fn culled_backs(surfels: &Surfels, camera: &Camera, settings: &Settings) -> Option<String> {
@@ -186,5 +214,23 @@ mod tests {
         let picture = Picture { size: [4, 1], colour, ..Default::default() };
         assert_eq!(covered(&picture, &white), 0.5);
         assert_eq!(covered(&picture, &Settings { background: None, ..white }), 0.75);
+    }
+
+    #[test]
+    fn a_model_that_cannot_be_drawn_has_its_cause() {
+        let one = |at: f32, radius: f32| Surfels {
+            positions: vec![glam::Vec3::splat(at)],
+            normals: vec![glam::Vec3::Z],
+            radii: vec![radius],
+            ..Default::default()
+        };
+        let text = |surfels: Surfels| nothing("a.ply", &surfels.into()).to_string();
+        assert!(
+            text(one(1e20, 1.0))
+                .starts_with("a.ply: all 1 surfels are invalid: coordinates exceed 1e15: scale")
+        );
+        assert!(text(one(1.0, f32::INFINITY)).contains("radii exceed 1e15"));
+        assert!(text(one(1.0, 0.0)).contains("a radius or a normal is 0"));
+        assert!(text(Surfels::default()).contains("nothing that can be drawn"));
     }
 }

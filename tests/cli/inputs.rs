@@ -203,6 +203,17 @@ fn an_empty_picture_has_its_cause() {
 }
 
 #[test]
+fn inputs_that_cannot_be_drawn_have_their_cause() {
+    let program = Program::new();
+    program.write("far.ply", surfels(&["1e20 0 0 0 0 1 1", "-1e20 0 0 0 0 1 1"]));
+    let run = program.run("render far.ply -o a.png --reference -q");
+    let expected = "far.ply: all 2 surfels are invalid: coordinates exceed 1e15: scale the file";
+    assert_eq!(run.error(1), expected);
+    let run = program.run("render scene:sphere?points=100 -o a.png --reference -q --radius-scale 1e30");
+    assert!(run.error(1).contains("all 100 surfels are invalid: radii exceed 1e15"), "{}", run.err);
+}
+
+#[test]
 fn a_file_of_few_points_is_read_whole() {
     let program = Program::new();
     let properties = ["x", "y", "z"].map(|name| format!("property float {name}\n")).concat();
