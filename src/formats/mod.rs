@@ -58,12 +58,14 @@ mod writer;
 pub use attributes::{Attribute, Values, WantedAttributes};
 pub use filter::{Filter, FilterCounts, Returns, class_name};
 pub use metadata::Metadata;
-pub use reader::{Inspected, Loaded, ReadOptions, extensions, inspect, levels, read, read_bytes};
+pub use reader::{
+    Inspected, Loaded, ReadOptions, extensions, inspect, levels, mesh_names, names, read, read_bytes,
+};
 pub use report::{Dropped, Faces, Lines, Report};
 pub use survey::Survey;
 pub use writer::{
     Contents, DiscProperties, PointSource, Written, check_writable, wanted_attributes, writable_extensions,
-    write,
+    writable_names, write,
 };
 
 use crate::error::{Error, Result};

@@ -12,6 +12,13 @@ pub fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
     text
 }
 
+/// Names as alternatives: `PLY, LAS or text`.
+pub fn either(names: impl Iterator<Item = impl Into<String>>) -> String {
+    let mut names: Vec<String> = names.map(Into::into).collect();
+    let last = names.pop().unwrap_or_default();
+    if names.is_empty() { last } else { format!("{} or {last}", names.join(", ")) }
+}
+
 /// Bytes of a file for a message: quoted, on one line, truncated.
 pub fn quoted(bytes: &[u8]) -> String {
     const LONGEST: usize = 40;

@@ -3,6 +3,7 @@
 use super::attributes::{Attribute, WantedAttributes};
 use super::declared::{Element, Encoding};
 use super::filter::Filter;
+use super::quoted::either;
 use super::report::Report;
 use super::source::{Parsed, Source};
 use super::{obj, ply, ptx, sniff, splat, spz, stl, text};
@@ -17,6 +18,16 @@ use std::sync::Arc;
 pub(super) trait Reader: Sync {
     /// The name of the format.
     fn name(&self) -> &'static str;
+
+    /// Names of variants of the format.
+    fn variants(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// Whether its files may have faces.
+    fn has_faces(&self) -> bool {
+        false
+    }
 
     /// Extensions of its files, in lower case.
     fn extensions(&self) -> &'static [&'static str];
@@ -213,6 +224,19 @@ fn find(name: &str, beginning: &[u8], columns: Option<&[String]>) -> Option<&'st
     let known = READERS.iter().find(|reader| reader.knows(beginning) == Some(true));
     let known = known.or_else(|| READERS.iter().find(has)).copied();
     known.or_else(|| is_named_table(beginning, columns).then_some(&text::Text as &dyn Reader))
+}
+
+/// Names of all formats that are read: `PLY, LAS, LAZ or text`.
+pub fn names() -> String {
+    let names = READERS
+        .iter()
+        .flat_map(|reader| [reader.name()].into_iter().chain(reader.variants().iter().copied()));
+    either(names)
+}
+
+/// Names of the formats that may have faces.
+pub fn mesh_names() -> String {
+    either(READERS.iter().filter(|reader| reader.has_faces()).map(|reader| reader.name()))
 }
 
 /// Extensions of all supported formats, in lower case.

@@ -5,6 +5,7 @@ use super::metadata::Metadata;
 use super::point_columns::PointColumns;
 #[cfg(any(feature = "e57", feature = "las"))]
 use super::point_table::PointTable;
+use super::quoted::either;
 use super::survey::Survey;
 use super::{atomic, ply};
 use crate::Progress;
@@ -14,7 +15,7 @@ use std::path::Path;
 
 /// A file format that models are written in.
 pub(super) trait Writer: Sync {
-    /// Extensions of its files, in lower case.
+    /// Ends of the names of its files, in lower case.
     fn extensions(&self) -> &'static [&'static str];
 
     /// Writes a file. The progress stage is `writing`, in points.
@@ -161,23 +162,24 @@ pub fn wanted_attributes(path: &Path) -> WantedAttributes {
     }
 }
 
-/// Extensions of all formats that are written, in lower case.
+/// Extensions of all formats that are written, in lower case: `copc.laz` is one, too.
 pub fn writable_extensions() -> impl Iterator<Item = &'static str> {
     WRITERS.iter().flat_map(|writer| writer.extensions()).copied()
 }
 
-fn extension(path: &Path) -> Option<String> {
-    Some(path.extension()?.to_string_lossy().to_lowercase())
+/// The extensions in words: `.ply, .las or .e57`.
+pub fn writable_names() -> String {
+    either(writable_extensions().map(|extension| format!(".{extension}")))
 }
 
 fn writer_of(path: &Path) -> Result<&'static dyn Writer> {
-    let name = path.display();
-    let own = extension(path);
+    let own = path.extension().map(|own| own.to_string_lossy().to_lowercase());
     let has = |writer: &&&dyn Writer| own.as_deref().is_some_and(|own| writer.extensions().contains(&own));
-    WRITERS.iter().find(has).copied().ok_or_else(|| {
-        let all: Vec<_> = writable_extensions().map(|extension| format!(".{extension}")).collect();
-        Error::Usage(format!("{name}: name the file {}", all.join(", ")))
-    })
+    WRITERS
+        .iter()
+        .find(has)
+        .copied()
+        .ok_or_else(|| Error::Usage(format!("{}: name the file {}", path.display(), writable_names())))
 }
 
 /// The table of a file of points; an error if the model has no points.
@@ -203,7 +205,7 @@ mod tests {
             assert!(writer_of(Path::new(name)).is_ok(), "{name}");
         }
         let failure = |name: &str| check_writable(Path::new(name)).unwrap_err().to_string();
-        assert_eq!(failure("a.obj"), "a.obj: name the file .ply, .las, .laz, .e57");
+        assert_eq!(failure("a.obj"), "a.obj: name the file .ply, .las, .laz, .copc.laz or .e57");
         assert!(failure("a").contains("name the file .ply"));
     }
 }

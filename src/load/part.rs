@@ -114,9 +114,7 @@ mod tests {
                 (expected.map(|(name, ..)| name), expected.map_or(DVec3::Y, |(.., up)| up));
             assert_eq!((name, up), (wanted, wanted_up), "{columns}");
             assert_eq!(shading.shading, expected.map_or(Shading::Lit, |(_, shading, _)| shading));
-            for extension in formats::writable_extensions()
-                .chain(["copc.laz"].into_iter().filter(|_| cfg!(feature = "las")))
-            {
+            for extension in formats::writable_extensions() {
                 let path = folder.path().join(format!("a.{extension}"));
                 let contents = Contents {
                     inputs: &loaded.inputs,

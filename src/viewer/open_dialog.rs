@@ -35,7 +35,10 @@ impl OpenDialog {
         self.refresh();
         let mut result = None;
         Window::new("Open").collapsible(false).default_width(420.0).show(ui.ctx(), |ui| {
-            ui.label("Points (PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, STL, SPLAT, SPZ, text), a camera (.json), or a built-in scene such as scene:bumpy-sphere.");
+            ui.label(format!(
+                "Points ({}), a camera (.json), or a built-in scene such as scene:bumpy-sphere.",
+                formats::names()
+            ));
             let early = self.take_early(ui);
             let field = TextEdit::singleline(&mut self.text).id(Id::new(FIELD)).desired_width(f32::INFINITY);
             let field = ui.add(field);

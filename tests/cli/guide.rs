@@ -57,6 +57,31 @@ fn every_option_is_in_a_chapter() {
 }
 
 #[test]
+fn formats_are_listed_alike() {
+    let program = Program::new();
+    let names = surfel::formats::names();
+    assert!(names.contains("LAZ, COPC, ") && names.ends_with(" or text"), "{names}");
+    let one_line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for command in ["render", "convert", "info"] {
+        assert!(one_line(&help(&program, command)).contains(&format!("{names} file")), "{command}");
+    }
+    assert!(text("src/guide/getting-started.md").contains(&format!("An input is a {names} file")));
+    let written = surfel::formats::writable_names();
+    assert!(one_line(&help(&program, "convert")).contains(&format!("The file to write: {written}")));
+    let refused = program.run("convert scene:sphere -o a.copc");
+    assert_eq!(refused.error(2), format!("a.copc: name the file {written}"));
+    let in_code = written.replace('.', "`.").replace(", ", "`, ").replace(" or", "` or") + "`";
+    let in_code = in_code.replace("`.copc`.laz", "`.copc.laz");
+    assert!(text("src/guide/convert.md").contains(&in_code), "{in_code}");
+    let meshes = surfel::formats::mesh_names();
+    assert!(text("src/guide/scenes.md").contains(&format!("a {meshes} file")), "{meshes}");
+    #[cfg(feature = "truth")]
+    assert!(one_line(&help(&program, "truth")).contains(&format!("a {meshes} file")));
+    #[cfg(feature = "metrics")]
+    assert!(help(&program, "compare").contains(surfel::formats::image::READ));
+}
+
+#[test]
 fn what_the_manual_types_is_understood() {
     let program = Program::new();
     let helps: Vec<_> = COMMANDS.iter().map(|(command, _)| (*command, help(&program, command))).collect();

@@ -6,16 +6,17 @@ use clap::Args;
 use std::ffi::OsString;
 #[cfg(feature = "bench")]
 use std::path::PathBuf;
+use surfel::formats::image::READ;
 use surfel::verify::metrics::flip::PIXELS_PER_DEGREE;
 
 /// Options of `surfel compare`.
 #[derive(Args, Debug)]
 pub struct Compare {
-    /// The picture: a PNG (sRGB) or EXR (linear light) file
-    #[arg(value_name = "A")]
+    /// The picture
+    #[arg(value_name = "A", help = format!("The picture: a {READ} file; PNG and JPEG are sRGB, EXR is linear light"))]
     pub picture: OsString,
-    /// The ground truth: a PNG or EXR file of the same size
-    #[arg(value_name = "B")]
+    /// The ground truth
+    #[arg(value_name = "B", help = format!("The ground truth: a {READ} file of the same size"))]
     pub truth: OsString,
     /// Compares numbered frames, and measures flicker and popping along them: A and B are patterns such as a/%04d.exr
     #[arg(long, conflicts_with = "map")]

@@ -1,25 +1,22 @@
 //! Options of `surfel convert` and `surfel info`.
 
-use super::{Colours, DeviceArgs, Points};
+use super::{Colours, DeviceArgs, Points, inputs};
 use crate::cli::values::{direction, edge, positive, whole};
 use clap::Args;
 use glam::DVec3;
 use std::ffi::OsString;
 use surfel::estimate::Estimate;
+use surfel::formats;
 use surfel::geometry::ToLines;
 
 /// Options of `surfel convert`.
 #[derive(Args, Debug)]
 pub struct Convert {
-    /// PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, STL, SPLAT, SPZ or text files, or built-in scenes such as scene:bumpy-sphere; several become one file
-    #[arg(required = true, value_name = "INPUT")]
+    /// Files or built-in scenes
+    #[arg(required = true, value_name = "INPUT", help = inputs("several become one file"))]
     pub inputs: Vec<OsString>,
-    /// The file to write: .ply, .las, .laz, .copc.laz or .e57
-    ///
-    /// A PLY file holds position, normal and radius; and where there are any, axes of ellipses, two-sidedness, clip lines, normalization
-    /// weights, tangents, colour, edges, faces and the properties of the inputs. LAS and LAZ files hold points with all properties of the inputs,
-    /// and normal, radius, axes and so on as extra bytes; E57 files hold points with normals, colours, intensities, returns and times. A warning names what is left out.
-    #[arg(short, long, value_name = "OUT")]
+    /// The file to write
+    #[arg(short, long, value_name = "OUT", help = written(""), long_help = written(WRITTEN))]
     pub output: OsString,
     /// Keeps one point per voxel of this side, in the positions' unit, of all inputs together
     #[arg(long, value_name = "SIZE", value_parser = positive::<f64>, allow_hyphen_values = true, conflicts_with_all = ["polygons", "lines"])]
@@ -58,6 +55,17 @@ pub struct Convert {
     pub quiet: bool,
 }
 
+/// What each format of written files holds.
+const WRITTEN: &str = "\n\nA PLY file holds position, normal and radius; and where there are any, axes of ellipses, two-sidedness, clip lines, \
+    normalization weights, tangents, colour, edges, faces and the properties of the inputs. LAS, LAZ and COPC files hold points with all properties \
+    of the inputs, and normal, radius, axes and so on as extra bytes; E57 files hold points with normals, colours, intensities, returns and times. \
+    A warning names what is left out.";
+
+/// Help of the written file.
+fn written(more: &str) -> String {
+    format!("The file to write: {}{more}", formats::writable_names())
+}
+
 /// Parses the largest radius of a tube, or `auto`.
 fn thickest(text: &str) -> Result<ToLines, String> {
     if text == "auto" {
@@ -76,8 +84,8 @@ impl Convert {
 /// Options of `surfel info`.
 #[derive(Args, Debug)]
 pub struct Info {
-    /// PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, STL, SPLAT, SPZ or text files, or built-in scenes such as scene:bumpy-sphere, described one by one
-    #[arg(required = true, value_name = "INPUT")]
+    /// Files or built-in scenes
+    #[arg(required = true, value_name = "INPUT", help = inputs("described one by one"))]
     pub inputs: Vec<OsString>,
     /// Estimates normals and radii, and prints where they come from; implied by the options of the estimation
     #[arg(long)]

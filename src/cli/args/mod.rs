@@ -34,6 +34,7 @@ use clap_complete::Shell;
 use glam::DVec3;
 use std::ffi::OsString;
 use std::path::PathBuf;
+use surfel::formats;
 use surfel::settings::methods::{self, Method};
 use surfel::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
 use surfel::settings::{Alpha, Choice, Cull, Edges, Hierarchy, Shading, Widen};
@@ -79,6 +80,11 @@ pub enum Command {
     Completions(Completions),
     /// Writes the man pages, surfel.1 and one for each command, to a folder
     Man(Man),
+}
+
+/// Help of inputs, of which several may be given.
+fn inputs(several: &str) -> String {
+    format!("{} files, or built-in scenes such as scene:bumpy-sphere; {several}", formats::names())
 }
 
 /// Options of `surfel devices`.
@@ -131,8 +137,8 @@ pub struct Man {
 /// Options of `surfel render`.
 #[derive(Args, Debug)]
 pub struct Render {
-    /// PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, STL, SPLAT, SPZ or text files, or built-in scenes such as scene:bumpy-sphere; several become one scene
-    #[arg(required = true, value_name = "INPUT")]
+    /// Files or built-in scenes
+    #[arg(required = true, value_name = "INPUT", help = inputs("several become one scene"))]
     pub inputs: Vec<OsString>,
     /// The picture: .png (sRGB, or `-` for standard output) or .exr (linear light)
     #[arg(short, long, value_name = "OUT")]

@@ -132,8 +132,8 @@ pub struct Colours {
         requires = "color_by"
     )]
     pub color_map: ColourMap,
-    /// Texture of the files' texture coordinates, instead of the one that they name: PNG, JPEG or EXR
-    #[arg(long, value_name = "FILE", conflicts_with = "color_by")]
+    /// Texture of the files' texture coordinates
+    #[arg(long, value_name = "FILE", conflicts_with = "color_by", help = format!("Texture of the files' texture coordinates, instead of the one that they name: {}", image::READ))]
     pub texture: Option<PathBuf>,
 }
 

@@ -4,6 +4,7 @@ use super::{Background, Camera, Layer, background, choice, size};
 use crate::cli::values::{Filter, positive, whole};
 use clap::Args;
 use std::ffi::OsString;
+use surfel::formats;
 use surfel::settings::{Choice, Shading};
 use surfel::verify::truth;
 use surfel::{Outputs, Settings};
@@ -11,7 +12,8 @@ use surfel::{Outputs, Settings};
 /// Options of `surfel truth`.
 #[derive(Args, Debug)]
 pub struct Truth {
-    /// A built-in scene such as scene:bumpy-sphere, or a PLY file with a triangle mesh
+    /// A built-in scene or a triangle mesh
+    #[arg(help = format!("A built-in scene such as scene:bumpy-sphere, or a {} file with triangles", formats::mesh_names()))]
     pub input: OsString,
     /// The picture: .png (sRGB, or `-` for standard output) or .exr (linear light)
     #[arg(short, long, value_name = "OUT")]

@@ -1,6 +1,6 @@
 //! Options of `surfel view`.
 
-use super::{Axes, Camera, Colours, DeviceArgs, Points, RenderSettings};
+use super::{Axes, Camera, Colours, DeviceArgs, Points, RenderSettings, inputs};
 use crate::cli::values::{choice, method, number, size};
 use clap::Args;
 use std::ffi::OsString;
@@ -11,8 +11,8 @@ use surfel::{Rasterizer, Result, Settings};
 /// Options of `surfel view`.
 #[derive(Args, Debug)]
 pub struct View {
-    /// PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, STL, SPLAT, SPZ or text files, or built-in scenes such as scene:bumpy-sphere; several become one scene, none an empty window
-    #[arg(value_name = "INPUT")]
+    /// Files or built-in scenes
+    #[arg(value_name = "INPUT", help = inputs("several become one scene, none an empty window"))]
     pub inputs: Vec<OsString>,
     /// The first method [default: perspective-ewa; pull-push for lines or triangles]
     #[arg(long, value_parser = method())]

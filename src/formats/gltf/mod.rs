@@ -52,6 +52,10 @@ impl Reader for Gltf {
         "glTF"
     }
 
+    fn has_faces(&self) -> bool {
+        true
+    }
+
     fn extensions(&self) -> &'static [&'static str] {
         &["gltf", "glb"]
     }

@@ -20,6 +20,9 @@ use std::ffi::OsStr;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+/// Formats of pictures that are read.
+pub const READ: &str = "PNG, JPEG or EXR";
+
 /// Destination of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Output {

@@ -1,6 +1,6 @@
 //! Pictures from files.
 
-use super::exr;
+use super::{READ, exr};
 use crate::error::{Cause, Error, Result};
 use crate::geometry::srgb;
 use crate::picture::Picture;
@@ -38,7 +38,7 @@ pub fn decode(bytes: &[u8]) -> Result<Picture, Cause> {
         png if png.starts_with(PNG) => read_codes(png, ImageFormat::Png),
         jpeg if jpeg.starts_with(JPEG) => read_codes(jpeg, ImageFormat::Jpeg),
         exr if exr.starts_with(EXR) => exr::read(exr, MOST_PIXELS),
-        _ => Err("not a PNG, JPEG or EXR file: convert it to one of these".into()),
+        _ => Err(format!("not a {READ} file: convert it to one of these").into()),
     }
 }
 

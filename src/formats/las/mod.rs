@@ -45,6 +45,10 @@ impl Reader for Las {
         "LAS"
     }
 
+    fn variants(&self) -> &'static [&'static str] {
+        &["LAZ", "COPC"]
+    }
+
     fn extensions(&self) -> &'static [&'static str] {
         &["las", "laz"]
     }

@@ -45,6 +45,10 @@ impl Reader for Obj {
         "OBJ"
     }
 
+    fn has_faces(&self) -> bool {
+        true
+    }
+
     fn extensions(&self) -> &'static [&'static str] {
         &["obj"]
     }

@@ -83,6 +83,10 @@ impl Reader for Ply {
         "PLY"
     }
 
+    fn has_faces(&self) -> bool {
+        true
+    }
+
     fn extensions(&self) -> &'static [&'static str] {
         &["ply"]
     }

@@ -40,6 +40,10 @@ impl Reader for Stl {
         "STL"
     }
 
+    fn has_faces(&self) -> bool {
+        true
+    }
+
     fn extensions(&self) -> &'static [&'static str] {
         &["stl"]
     }

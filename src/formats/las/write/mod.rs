@@ -20,7 +20,6 @@ use crate::error::Result;
 use crate::formats::atomic;
 use crate::formats::meter::Meter;
 use crate::formats::point_table::PointTable;
-use crate::formats::reader::Reader;
 use crate::formats::writer::{Contents, Writer, Written, point_table};
 use laz::{LasZipError, LazVlr, ParLasZipCompressor};
 use plan::{Plan, Storage};
@@ -33,7 +32,7 @@ const ROWS: usize = 1 << 10;
 
 impl Writer for Las {
     fn extensions(&self) -> &'static [&'static str] {
-        Reader::extensions(self)
+        &["las", "laz", "copc.laz"]
     }
 
     fn write(&self, path: &Path, contents: &Contents<'_>, progress: &dyn Progress) -> Result<Written> {
