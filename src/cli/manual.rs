@@ -3,6 +3,7 @@
 use super::args::{Completions, Man, Surfel};
 use super::files::print;
 use clap::CommandFactory;
+use surfel::formats::atomic;
 use surfel::{Error, Result};
 
 const NAME: &str = "surfel";
@@ -16,6 +17,7 @@ pub fn completions(args: &Completions) -> Result<()> {
 
 /// Writes the man pages.
 pub fn man(args: &Man) -> Result<()> {
-    clap_mangen::generate_to(Surfel::command(), &args.folder)
-        .map_err(Error::io(&args.folder, "cannot write the manual"))
+    const ACTION: &str = "cannot write the manual";
+    atomic::create_folder(&args.folder, ACTION)?;
+    clap_mangen::generate_to(Surfel::command(), &args.folder).map_err(Error::io(&args.folder, ACTION))
 }

@@ -8,6 +8,7 @@ use super::{files, progress, reference, summary, turntable, undrawn, vulkan};
 use std::path::Path;
 use surfel::embed::Measured;
 use surfel::estimate::Estimate;
+use surfel::formats::atomic;
 use surfel::formats::camera as camera_file;
 use surfel::formats::colour_bar::{ColourBar, write_with};
 use surfel::formats::image::Output;
@@ -144,6 +145,9 @@ pub fn run(args: &Render) -> Result<()> {
     }
     if !out.is_png() {
         keep_layers(&mut outcome.picture, task.layers);
+    }
+    if let Some(folder) = turntable::folder(args, &out) {
+        atomic::create_folder(&folder, "cannot write")?;
     }
     write_with(&outcome.picture, task.settings.shading, bar.as_ref(), &out)?;
     if let Some((count, pattern)) = args.turntable.zip(turntable::pattern(args)?) {
@@ -313,7 +317,13 @@ fn print_summary(args: &Render, contents: &str, outcome: &Outcome) {
 
 /// Checks that the outputs can be written, and that report and camera overwrite no other file.
 fn check_outputs(args: &Render, out: &Output) -> Result<()> {
-    out.check()?;
+    match turntable::folder(args, out).filter(|folder| !folder.exists()) {
+        Some(folder) => {
+            out.check_name()?;
+            atomic::check_folder(&folder)?;
+        }
+        None => out.check()?,
+    }
     if out.is_png() && !args.layers.is_empty() {
         return Err(Error::Usage("--layers are written to EXR alone: name the picture .exr".into()));
     }

@@ -5,7 +5,9 @@ use super::pattern::Pattern;
 use super::render::Task;
 use glam::{DMat4, DQuat, DVec3};
 use std::f64::consts::TAU;
+use std::path::PathBuf;
 use surfel::Result;
+use surfel::formats::atomic;
 use surfel::formats::image::Output;
 use surfel::geometry::Camera;
 
@@ -18,6 +20,12 @@ pub fn pattern(args: &args::Render) -> Result<Option<Pattern>> {
 pub fn first(args: &args::Render) -> Result<Output> {
     let first = pattern(args)?.map(|pattern| pattern.file(0));
     Ok(Output::parse(first.as_ref().unwrap_or(&args.output)))
+}
+
+/// The folder of the pictures, if a turntable is rendered.
+pub fn folder(args: &args::Render, first: &Output) -> Option<PathBuf> {
+    let Output::File(path) = first else { return None };
+    args.turntable.map(|_| atomic::folder_of(path))
 }
 
 /// The cameras of a full turn of `count` pictures about the axis `up` through `middle`, counter-clockwise as seen from above. The first is

@@ -37,6 +37,34 @@ pub fn check(path: &Path) -> Result<()> {
     }
 }
 
+/// Checks whether [`create_folder`] can succeed. Leaves nothing behind.
+///
+/// # Errors
+/// As [`create_folder`].
+pub fn check_folder(folder: &Path) -> Result<()> {
+    if folder.is_dir() { Ok(()) } else { check(folder) }
+}
+
+/// Creates a folder if it is missing, but not the one that it is in. `action` names in errors what cannot be done without it.
+///
+/// # Errors
+/// [`Error::Io`] if the folder that it is in is missing or not writable, or if a file has its name.
+pub fn create_folder(folder: &Path, action: &'static str) -> Result<()> {
+    if folder.is_dir() {
+        return Ok(());
+    }
+    let advised = |error| advise(&folder_of(folder), error);
+    fs::create_dir(folder).map_err(advised).map_err(Error::io(folder, action))
+}
+
+/// The folder that a file is in.
+pub fn folder_of(target: &Path) -> PathBuf {
+    match target.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
+        _ => PathBuf::from("."),
+    }
+}
+
 /// Resolves `path`, with the metadata of the existing file. A link is kept: its target is replaced.
 fn resolve(path: &Path) -> (PathBuf, Option<Metadata>) {
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
@@ -76,13 +104,6 @@ fn temporary_for(target: &Path, existing: Option<&Metadata>) -> io::Result<Named
             let folder = folder_of(target);
             temporary_in(&folder).map_err(|error| advise(&folder, error))
         }
-    }
-}
-
-fn folder_of(target: &Path) -> PathBuf {
-    match target.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
-        _ => PathBuf::from("."),
     }
 }
 
@@ -146,6 +167,22 @@ mod tests {
             let text = result.unwrap_err().to_string();
             assert!(text.contains("it is a folder"), "{text}");
         }
+    }
+
+    #[test]
+    fn only_the_last_folder_is_created() {
+        let folder = tempfile::tempdir().unwrap();
+        let [new, deep] = ["a", "b/c"].map(|name| folder.path().join(name));
+        check_folder(&new).unwrap();
+        assert!(names(folder.path()).is_empty());
+        (0..2).for_each(|_| create_folder(&new, "cannot write").unwrap());
+        assert_eq!(names(folder.path()), ["a"]);
+        for refused in [check_folder(&deep), create_folder(&deep, "cannot write")] {
+            let text = refused.unwrap_err().to_string();
+            assert!(text.contains("b does not exist: create it"), "{text}");
+        }
+        write(&folder.path().join("f"), |_| Ok(())).unwrap();
+        assert!(create_folder(&folder.path().join("f"), "cannot write").is_err());
     }
 
     #[test]

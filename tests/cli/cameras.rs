@@ -55,3 +55,21 @@ fn the_automatic_camera_can_be_saved() {
         assert!(run.error(2).contains("--save-camera would overwrite"), "{}", run.err);
     }
 }
+
+#[test]
+fn a_turntable_creates_its_folder() {
+    let program = Program::new();
+    let common = "--turntable 2 --reference --size 16x16 -q";
+    program.run(&format!("render scene:sphere?points=50 -o new/%d.png {common}")).text();
+    assert!(["new/0.png", "new/1.png"].iter().all(|name| program.path(name).exists()));
+    let run = program.run(&format!("render scene:sphere?points=50 -o no/such/%d.png {common}"));
+    assert!(run.error(1).contains("the folder no does not exist: create it"), "{}", run.err);
+    program.run(&format!("render missing.ply -o other/%d.png {common}")).error(1);
+    assert!(
+        program
+            .run(&format!("render missing.ply -o other/%d.gif {common}"))
+            .error(2)
+            .contains(".png or .exr")
+    );
+    assert_eq!(program.files(), ["new"]);
+}

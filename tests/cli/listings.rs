@@ -79,6 +79,8 @@ fn shells_complete_and_the_manual_has_a_page_for_each_command() {
         let text = std::fs::read_to_string(program.path(page)).unwrap();
         assert!(text.contains(".TH"), "{page}: {text}");
     }
+    program.run("man new").text();
+    assert!(program.path("new/surfel-truth.1").exists());
     assert!(program.run("man no/such").error(1).contains("cannot write the manual"));
 }
 

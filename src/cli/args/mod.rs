@@ -130,7 +130,7 @@ pub struct Completions {
 /// Options of `surfel man`.
 #[derive(Args, Debug)]
 pub struct Man {
-    /// An existing folder
+    /// The folder; it is created if only it is missing
     pub folder: PathBuf,
 }
 
@@ -143,7 +143,7 @@ pub struct Render {
     /// The picture: .png (sRGB, or `-` for standard output) or .exr (linear light)
     #[arg(short, long, value_name = "OUT")]
     pub output: OsString,
-    /// Renders N pictures on a full turn about the scene's up axis; OUT is a pattern such as frames/%04d.png
+    /// Renders N pictures on a full turn about the scene's up axis; OUT is a pattern such as frames/%04d.png, whose folder is created if only it is missing
     #[arg(long, value_name = "N", value_parser = whole::<u32>(1..=100_000))]
     pub turntable: Option<u32>,
     /// The method [default: perspective-ewa; pull-push for lines or triangles]; see `surfel methods`

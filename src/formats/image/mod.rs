@@ -51,8 +51,20 @@ impl Output {
     /// # Errors
     /// [`Error::Usage`] if the extension is neither png nor exr, [`Error::Io`] if no file can be written there.
     pub fn check(&self) -> Result<()> {
+        self.check_name()?;
         match self {
-            Self::File(path) => Kind::of(path).and_then(|_| atomic::check(path)),
+            Self::File(path) => atomic::check(path),
+            Self::Stdout => Ok(()),
+        }
+    }
+
+    /// Validates the name alone.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if the extension is neither png nor exr.
+    pub fn check_name(&self) -> Result<()> {
+        match self {
+            Self::File(path) => Kind::of(path).map(drop),
             Self::Stdout => Ok(()),
         }
     }
