@@ -50,9 +50,13 @@ pub fn assumptions(input: &Path, given: Given, loaded: &LoadedModel) -> Vec<Stri
     });
     let suggested = loaded.shading();
     let shading = (!given.shading && suggested.shading == Shading::Edl).then(|| {
+        let (part, what) = match loaded.scattered() >= loaded.billboards() {
+            true => (loaded.scattered(), "normals are unlike their neighbours'"),
+            false => (loaded.billboards(), "points are on no surface"),
+        };
+        let part = 100.0 * part;
         format!(
-            "{name}: {:.0} % of the normals are unlike their neighbours', so shaded by eye-dome lighting: --shading lit lights them",
-            100.0 * loaded.scattered()
+            "{name}: {part:.0} % of the {what}, so shaded by eye-dome lighting: --shading lit lights them"
         )
     });
     let ao = (!given.ao && suggested.ao > 0.0).then(|| {
