@@ -8,6 +8,8 @@
 #endif
 #ifdef FRAGMENT
 
+#include "lib/srgb.glsl"
+
 layout(constant_id = 6) const uint SHADING = 0;
 const uint NORMAL = 2, DEPTH = 3;
 
@@ -47,10 +49,6 @@ vec3 codes_of(vec3 value) {
         return vec3(1.0 - (value.x - least) * scale);
     }
     return map_colour(value.x / max(greatest, 1.0));
-}
-
-vec3 srgb_to_linear(vec3 c) {
-    return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
 }
 
 void main() {

@@ -18,6 +18,7 @@
 
 #ifdef COMPUTE
 
+#include "lib/beside.glsl"
 #include "lib/cull_reasons.glsl"
 
 layout(local_size_x = 64) in;
@@ -84,9 +85,6 @@ bool has_surfel(uint entry) {
 // disc radii, it is at most √(8 R) disc radii behind, and the tangent of its angle to the screen is at least √(R / 2). The limits meet at R = 32.
 const float BEHIND_CENTRE = 16.0; // disc radii, or widths of a pixel where these are larger
 const float STEEP = 4.0;          // tangent: 76°
-// How far the disc may be behind the surface in a pixel beside its centre's. A pixel's width w from its outline, that same surface is √(2 R r w) nearer
-// than at it: at most 8 √(r w) for R = 32.
-const float BEHIND_BESIDE = 8.0;
 const ivec2 BESIDE[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
 
 // κ of the point behind the centre by `offset`, relative to the distance in perspective, else in κ; moved back by ε as those of visibility are.

@@ -1,5 +1,6 @@
 // Rays of pixels, and the projection of discs, for pull–push.
 
+#include "lib/flat_pixel.glsl"
 #include "lib/ray_step.glsl"
 
 layout(constant_id = 28) const bool PAPER = false; // rules as published
@@ -7,11 +8,6 @@ layout(constant_id = 28) const bool PAPER = false; // rules as published
 // Projected size of a unit length parallel to the image plane, px; at distance 1 in perspective.
 float focal_scale() {
     return sqrt(view.jacobian);
-}
-
-// Parallel projection of a vector at distance 1, px.
-vec2 flat_pixel(vec3 v) {
-    return vec2(dot(view.flat_rows[0].xyz, v), dot(view.flat_rows[1].xyz, v));
 }
 
 // Unit vector from the surface at a screen position to the eye.

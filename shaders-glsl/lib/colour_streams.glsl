@@ -1,6 +1,8 @@
 // Colour formats of scenes: 8 bits per channel in a word, sRGB or linear; three linear floats; linear half floats in two words; or with a
 // texture, coordinates in it followed by the linear colour.
 
+#include "lib/srgb.glsl"
+
 const uint COLOURS_NONE = 0, COLOURS_SRGB8 = 1, COLOURS_LINEAR = 2, COLOURS_TEXTURED = 3, COLOURS_UNORM8 = 4, COLOURS_HALF = 5;
 
 // Words per colour of a tightly packed stream.
@@ -8,10 +10,6 @@ uint colour_words(uint kind) {
     if (kind == COLOURS_LINEAR) return 3;
     if (kind == COLOURS_TEXTURED) return 5;
     return kind == COLOURS_HALF ? 2 : 1;
-}
-
-vec3 srgb_to_linear(vec3 c) {
-    return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
 }
 
 // NAME(i): colour i, linear, of a stream of this KIND in WORDS, which starts at OFFSET and is STRIDE words apart.

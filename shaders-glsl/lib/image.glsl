@@ -1,6 +1,7 @@
 // Projection of a disc by kind of footprint: an ellipse on the screen and a plane through the centre.
 
 #include "lib/conic.glsl"
+#include "lib/flat_pixel.glsl"
 
 // A disc in front of the eye; all vectors world space.
 struct Disc {
@@ -74,11 +75,6 @@ Image image_of_disc(Disc disc, float sigma, vec3 S, vec3 T) {
 // Component of a vector parallel to the image plane.
 vec3 flattened(vec3 v) {
     return v - dot(v, view.forward_hi.xyz) * view.forward_hi.xyz;
-}
-
-// Parallel projection of a vector at distance 1, px.
-vec2 flat_pixel(vec3 v) {
-    return vec2(dot(view.flat_rows[0].xyz, v), dot(view.flat_rows[1].xyz, v));
 }
 
 // Projected size of a unit length along y at distance 1, px: η.

@@ -1,5 +1,7 @@
 // Reconstruction of a sample of the finer level from the coarser samples around it and from its neighbours (marroquim2008 §3.3).
 
+#include "lib/beside.glsl"
+
 layout(constant_id = 32) const bool PING_PONG = false; // both pyramids alternate by level
 
 layout(constant_id = 65) const bool BOX_WEIGHTS = false; // of discs, by the published rules: 1 up to the rim
@@ -60,10 +62,6 @@ float weight_of(Sample s, vec2 centre, float widening, inout Sums sums) {
     sums.facing = min(sums.facing, facing_distance(s, covers));
     return covers ? exp(-(PAPER ? PAPER_RIM : RIM) * m2) : 0.0;
 }
-
-// How far a disc is at most behind the surface that faces the eye beside it, if it is that surface's past an outline; pixels' widths, and in proportion
-// to the root of its radius, px. See `sides.glsl`.
-const float BEHIND_BESIDE = 8.0;
 
 // Whether a disc of level 0 is the surface that faces the eye beside it, past an outline.
 bool is_past_outline(Sample s, vec2 beside) {
