@@ -9,7 +9,7 @@ pub use counts::{FilterCounts, class_name};
 
 use super::declared::{Element, Kind};
 use super::source::Parsed;
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use std::num::NonZeroU64;
 
 /// Conditions that all points that are read meet. Faces and lines of points that are left out are left out, too.
@@ -98,24 +98,6 @@ impl Filter {
             }
         }
         Ok(columns)
-    }
-
-    /// The conditions with bounds that include the coordinates which they are rounded from: decimals of coordinates in single precision, or of
-    /// positions as exact as they are stored, relative to an origin.
-    pub(super) fn for_rounded_bounds(self, is_single: bool) -> Self {
-        let single = |[min, max]: [DVec3; 2]| {
-            let [min, max] = [min, max].map(|at| at.as_vec3().to_array());
-            [min.map(f32::next_down), max.map(f32::next_up)].map(|at| Vec3::from(at).as_dvec3())
-        };
-        let double = |[min, max]: [DVec3; 2]| {
-            let sides = (max - min).to_array().into_iter().filter(|side| side.is_finite());
-            let stored = sides.fold(0.0, f64::max) * f64::from(f32::EPSILON);
-            // Coordinates that are scaled and shifted are rounded themselves.
-            let error = |at: DVec3| at.abs() * (4.0 * f64::EPSILON) + stored;
-            [min - error(min), max + error(max)]
-        };
-        let bounds = self.bounds.map(|bounds| if is_single { single(bounds) } else { double(bounds) });
-        Self { bounds, ..self }
     }
 
     /// Whether a position is within the bounds.

@@ -39,6 +39,9 @@ pub struct Report {
     pub dropped: Dropped,
     /// Numbers of points by class and return, if [`ReadOptions::counts`](super::ReadOptions::counts) wants them.
     pub counts: Option<FilterCounts>,
+    /// Least and greatest coordinates of the points that are not dropped, in float64, in the file's own coordinate system: bounds of a
+    /// [`Filter`](super::Filter) that keep all of these points.
+    pub bounds: Option<[DVec3; 2]>,
     /// Invalid clip lines: not finite, without a normal, or orthogonal to the tangent plane.
     pub clip_lines_dropped: u64,
     /// Invalid normalization weights: not finite, or not above 0.
@@ -82,6 +85,7 @@ impl Report {
             points: element.count,
             dropped: points.dropped,
             counts: points.counts.clone(),
+            bounds: points.bounds,
             clip_lines_dropped: points.clip_lines,
             weights_dropped: points.weights,
             materials_dropped: 0,

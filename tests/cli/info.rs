@@ -82,8 +82,10 @@ fn all_points_are_in_the_bounds_that_are_printed() {
     let rows = ["0.1 -0.3 7 0 0 1 1", "0.7 0.2 9.1 0 0 1 1"];
     program
         .write("float.ply", surfels(&rows))
-        .write("text.xyz", "600000.123456789 0 0.3\n600000.7 0.1 9\n600001.987654321 0.2 1\n");
-    for file in [sample, "float.ply", "text.xyz"] {
+        .write("text.xyz", "600000.123456789 0 0.3\n600000.7 0.1 9\n600001.987654321 0.2 1\n")
+        // More decimals than a position relative to the origin keeps.
+        .write("far.xyz", "636000.7389999 0.1 5\n637179.2282938 1.123456789 6\n636501.1111111 0.3 5.5\n");
+    for file in [sample, "float.ply", "text.xyz", "far.xyz"] {
         let json = |options: &str| -> serde_json::Value {
             serde_json::from_str(program.run(&format!("info {file} --json {options}")).text()).unwrap()
         };

@@ -1,40 +1,37 @@
 //! Bounds of points, as `--bounds` takes them.
 
 use glam::DVec3;
-use surfel::formats::declared::{Element, Kind, Property, Scalar};
 use surfel::geometry::Cloud;
 
-/// Least and greatest coordinates of the points, which `elements` declare, with the digits that tell them from others; `None` without points.
-pub fn of(cloud: &Cloud, elements: &[Element]) -> Option<[DVec3; 2]> {
-    let is_single = is_single(elements);
+/// How far rounded bounds may be from the points, in the longest side of the bounds.
+const MOST: f64 = 1e-6;
+
+/// Bounds of the points of a built-in scene, rounded outwards; `None` without points.
+pub fn of(cloud: &Cloud) -> Option<[DVec3; 2]> {
     let min = cloud.positions.iter().copied().reduce(|a, b| a.min(b))?;
     let max = cloud.positions.iter().copied().reduce(|a, b| a.max(b))?;
-    let corner = |at: glam::Vec3| {
-        let [x, y, z] = [0, 1, 2].map(|axis| shortest(cloud.origin[axis], at[axis], is_single));
-        DVec3::new(x, y, z)
-    };
-    Some([min, max].map(corner))
+    Some(outward([min, max].map(|at| cloud.origin + at.as_dvec3())))
 }
 
-/// Whether all coordinates are declared in single precision.
-fn is_single(elements: &[Element]) -> bool {
-    let has = |element: &Element, axis: &str| {
-        let is = |property: &Property| property.name == axis && property.kind == Kind::Scalar(Scalar::F32);
-        element.properties.iter().any(is)
-    };
-    elements.iter().any(|element| ["x", "y", "z"].iter().all(|axis| has(element, axis)))
+/// Bounds that include these, with the fewest decimals that are near enough.
+pub fn outward([min, max]: [DVec3; 2]) -> [DVec3; 2] {
+    let most = MOST * (max - min).max_element();
+    // 0 − 0 is 0, and −0 is not.
+    [min.map(|least| 0.0 - above(-least, most)), max.map(|greatest| 0.0 + above(greatest, most))]
 }
 
-/// The number with the fewest decimals that is stored as this position relative to the origin, or in single precision.
-fn shortest(origin: f64, relative: f32, is_single: bool) -> f64 {
-    const MOST: usize = 17;
-    let exact = origin + f64::from(relative);
-    let single = exact as f32;
-    if origin == 0.0 || (is_single && f64::from(single) == exact) {
-        return single.to_string().parse().unwrap_or(exact);
-    }
-    let mut numbers = (0..=MOST).filter_map(|digits| format!("{exact:.digits$}").parse().ok());
-    numbers.find(|number: &f64| (number - origin) as f32 == relative).unwrap_or(exact)
+/// The number with the fewest decimals that is at least `coordinate`, and at most `most` above.
+fn above(coordinate: f64, most: f64) -> f64 {
+    const DECIMALS: i32 = 17;
+    let rounded = |number: f64, decimals: i32| -> Option<f64> {
+        format!("{number:.digits$}", digits = decimals as usize).parse().ok()
+    };
+    let up = |decimals: i32| {
+        let nearest = rounded(coordinate, decimals)?;
+        if nearest < coordinate { rounded(nearest + 0.1f64.powi(decimals), decimals) } else { Some(nearest) }
+    };
+    let is_near = |number: &f64| (coordinate..=coordinate + most).contains(number);
+    (0..=DECIMALS).filter_map(up).find(is_near).unwrap_or(coordinate)
 }
 
 #[cfg(test)]
@@ -43,28 +40,31 @@ mod tests {
     use glam::Vec3;
 
     #[test]
-    fn coordinates_have_the_digits_of_the_file() {
-        let origin = DVec3::new(636_000.0, 848_000.0, 0.0);
-        let at = |x: f64, y: f64, z: f64| (DVec3::new(x, y, z) - origin).as_vec3();
-        let [a, b] = [at(636_001.76, 848_935.2, -0.1), at(637_179.22, 849_497.9, 1e-12)];
-        let cloud = Cloud { origin, positions: vec![b, a, b], ..Default::default() };
-        let [min, max] = of(&cloud, &[]).unwrap();
-        assert_eq!(
-            format!("{min} {max}"),
-            "[636001.76, 848935.2, -0.1] [637179.22, 849497.9, 0.000000000001]"
-        );
-        assert_eq!(of(&Cloud::default(), &[]), None);
-        let far = Cloud {
-            origin: DVec3::splat(-2.0),
-            positions: vec![Vec3::splat(-2.063 + 2.0)],
-            ..Default::default()
+    fn bounds_are_rounded_outwards() {
+        let text = |min: DVec3, max: DVec3| {
+            let [low, high] = outward([min, max]);
+            assert!(low.cmple(min).all() && high.cmpge(max).all(), "{low} {high}");
+            format!("{low} to {high}")
         };
-        let property = |name: &str| Property { name: name.into(), kind: Kind::Scalar(Scalar::F32) };
-        let properties = ["x", "y", "z"].map(property).into();
-        let single = [Element { name: "vertex".into(), count: 1, properties }];
-        assert_eq!(of(&far, &single), Some([DVec3::splat(-2.063); 2]));
-        assert_ne!(of(&far, &[]), of(&far, &single), "a number of double precision has more digits");
-        let one = Cloud { positions: vec![Vec3::new(0.1, -7.0, 1e9)], ..Default::default() };
-        assert_eq!(of(&one, &[]), Some([DVec3::new(0.1, -7.0, 1e9); 2]));
+        let (min, max) =
+            (DVec3::new(636_001.762_345, 848_935.2, -0.1), DVec3::new(637_001.762_345, 849_497.9, -0.0));
+        assert_eq!(text(min, max), "[636001.762, 848935.2, -0.1] to [637001.763, 849497.9, 0]");
+        let float = |x: f32, y: f32, z: f32| Vec3::new(x, y, z).as_dvec3();
+        assert_eq!(
+            text(float(0.1, -0.3, 7.0), float(0.7, 0.2, 9.0)),
+            "[0.1, -0.300001, 7] to [0.7, 0.200001, 9]"
+        );
+        for single in [DVec3::splat(1e-12), DVec3::splat(1e-30), DVec3::splat(-1e300), float(0.1, 1e9, -1e-7)]
+        {
+            assert_eq!(outward([single; 2]), [single; 2]);
+        }
+    }
+
+    #[test]
+    fn bounds_of_a_scene_are_those_of_its_points() {
+        let origin = DVec3::new(5.0, 0.0, 0.0);
+        let cloud = Cloud { origin, positions: vec![Vec3::ONE, Vec3::ZERO], ..Default::default() };
+        assert_eq!(of(&cloud), Some([origin, DVec3::new(6.0, 1.0, 1.0)]));
+        assert_eq!(of(&Cloud::default()), None);
     }
 }

@@ -41,7 +41,7 @@ impl Input {
     /// The points of a built-in scene.
     pub fn of_scene(name: &str) -> Result<Self> {
         let cloud = scene_cloud(name)?;
-        let (points, bounds) = (cloud.len() as u64, bounds::of(&cloud, &[]));
+        let (points, bounds) = (cloud.len() as u64, bounds::of(&cloud));
         Ok(Self { name: name.into(), points, bounds, up: DVec3::Y, cloud, polygons: true })
     }
 
@@ -49,7 +49,7 @@ impl Input {
     pub fn of_file(path: &Path, loaded: Loaded, args: &Info) -> Self {
         let up = loaded.up();
         let Loaded { cloud, report, .. } = loaded;
-        let bounds = bounds::of(&cloud, &report.elements);
+        let bounds = report.bounds.map(bounds::outward);
         let cloud = match args.points.points {
             Some(points) => cloud.at_most(points),
             None => cloud,

@@ -178,9 +178,12 @@ fn many_points_are_read_in_pieces_and_get_their_origin_from_some() {
     let file = written(fields, (0..count).map(point).collect(), None);
     let wanted = WantedAttributes::Named(["return_number", "number_of_returns"].map(str::to_owned).into());
     let options = ReadOptions { scalar: Some("row".into()), attributes: wanted, ..Default::default() };
-    let Loaded { cloud, attributes, .. } = read_bytes("a", &file, &options).unwrap();
+    let Loaded { cloud, attributes, report } = read_bytes("a", &file, &options).unwrap();
     assert_eq!(cloud.len(), count as usize);
     assert!(cloud.origin.x > 1e6);
+    let [min, max] = report.bounds.unwrap();
+    // As exact as the file's coordinates, not as the positions.
+    assert_eq!([min.x, max.x, min.z, max.z], [exact(0).x, exact(count - 1).x, 0.0, 976.0]);
     let Some(Colours::Srgb8(colours)) = &cloud.colours else { panic!() };
     let scalar = cloud.scalar.as_ref().unwrap();
     for i in (0..count).step_by(37).chain([16_383, 16_384, count - 1]) {

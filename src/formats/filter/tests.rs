@@ -173,6 +173,37 @@ fn sides_of_the_box_belong_to_it_and_points_outside_are_not_counted() {
     assert!(none.contains("none of its 8 points is left by the filter: choose other bounds"), "{none}");
 }
 
+/// Tiles share the points at their common side alone.
+#[test]
+fn points_a_millimetre_outside_of_a_large_box_are_left_out() {
+    let text = (-3..=3).fold(String::new(), |mut text, i| {
+        let _ = writeln!(text, "{} 0 0", 10_000.0 + 0.001 * f64::from(i));
+        text
+    });
+    let count = |min: f64, max: f64| {
+        let bounds = [DVec3::new(min, -1.0, -1.0), DVec3::new(max, 20_000.0, 1.0)];
+        read_bytes("a.xyz", text.as_bytes(), &within(bounds)).unwrap().cloud.len()
+    };
+    assert_eq!([count(0.0, 1e4), count(1e4, 2e4), count(0.0, 2e4)], [4, 4, 7]);
+}
+
+#[test]
+fn the_bounds_of_the_report_keep_all_points_and_narrower_ones_do_not() {
+    let mut files = files();
+    if cfg!(feature = "e57") {
+        files.push(sample("scans.e57"));
+    }
+    for (name, bytes) in files {
+        let read = |bounds| read_bytes(&name, &bytes, &within(bounds)).unwrap();
+        let whole = read([f64::NEG_INFINITY, f64::INFINITY].map(DVec3::splat));
+        let [min, max] = whole.report.bounds.unwrap();
+        assert_eq!(read([min, max]), whole, "{name}");
+        for narrower in [[min.with_x(min.x.next_up()), max], [min, max.with_y(max.y.next_down())]] {
+            assert!(read(narrower).report.dropped.filtered > 0, "{name}: {narrower:?}");
+        }
+    }
+}
+
 /// The points of two scans count on, those without a position too.
 #[cfg(feature = "e57")]
 #[test]

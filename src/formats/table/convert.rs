@@ -40,6 +40,8 @@ pub struct Tally {
     pub lacking: bool,
     /// Counts by class and return, if the layout has them.
     pub counts: Option<Box<RowCounts>>,
+    /// Least and greatest coordinates of the points that are kept, in the file's own coordinate system.
+    pub bounds: Option<[DVec3; 2]>,
 }
 
 impl Tally {
@@ -53,6 +55,10 @@ impl Tally {
         self.clip_lines += other.clip_lines;
         self.weights += other.weights;
         self.lacking |= other.lacking;
+        self.bounds = match (self.bounds, other.bounds) {
+            (Some([min, max]), Some([low, high])) => Some([min.min(low), max.max(high)]),
+            (own, others) => own.or(others),
+        };
         match (&mut self.counts, other.counts) {
             (Some(all), Some(others)) => all.add(&others),
             (all, others) => *all = all.take().or(others),
@@ -62,12 +68,7 @@ impl Tally {
 
 /// Converts all rows of the block to consecutive entries of `out`.
 pub fn convert(block: &Block, layout: &Layout, out: &mut Slices) -> Tally {
-    let origin = layout.origin.unwrap_or_default();
-    let mut tally = if layout.narrow {
-        positions(block, layout, out.narrow, |position| (position - origin).as_vec3(), Vec3::NAN)
-    } else {
-        positions(block, layout, out.wide, |position| position, DVec3::NAN)
-    };
+    let mut tally = bounded_positions(block, layout, out);
     if layout.fills(NORMAL) {
         out.normals.iter_mut().zip(block.triples(NORMAL)).for_each(|(to, n)| *to = shape::unit(n));
     }
@@ -115,6 +116,29 @@ pub fn convert(block: &Block, layout: &Layout, out: &mut Slices) -> Tally {
 pub fn is_position(at: DVec3) -> bool {
     let inside = |coordinate: f64| coordinate.abs() <= LARGEST;
     inside(at.x) & inside(at.y) & inside(at.z)
+}
+
+/// Positions, with the bounds of those that are kept: before they are stored as f32, relative to an origin.
+fn bounded_positions(block: &Block, layout: &Layout, out: &mut Slices) -> Tally {
+    if layout.narrow {
+        let origin = layout.origin.unwrap_or_default();
+        let tally = positions(block, layout, out.narrow, |at| (at - origin).as_vec3(), Vec3::NAN);
+        Tally { bounds: bounds(block, out.narrow.iter().map(|at| at.is_finite())), ..tally }
+    } else {
+        let tally = positions(block, layout, out.wide, |at| at, DVec3::NAN);
+        Tally { bounds: bounds(block, out.wide.iter().map(|at| at.is_finite())), ..tally }
+    }
+}
+
+/// Least and greatest coordinates of the rows that are kept; `None` without any.
+fn bounds(block: &Block, kept: impl Iterator<Item = bool>) -> Option<[DVec3; 2]> {
+    let [mut min, mut max] = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    for (at, is_kept) in block.triples(POSITION).zip(kept) {
+        if is_kept {
+            [min, max] = [min.min(at), max.max(at)];
+        }
+    }
+    min.cmple(max).all().then_some([min, max])
 }
 
 /// Positions; dropped ones become `none`.

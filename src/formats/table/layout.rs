@@ -77,7 +77,7 @@ impl Layout {
             colour: None,
             narrow,
             origin: None,
-            filter: options.filter.clone().for_rounded_bounds(narrow),
+            filter: options.filter.clone(),
             counts: options.counts,
             attributes: Vec::new(),
             diameters: false,

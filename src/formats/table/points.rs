@@ -44,6 +44,8 @@ pub struct Points {
     pub weights: u64,
     /// Counts by class and return, if the layout has them.
     pub counts: Option<FilterCounts>,
+    /// Least and greatest coordinates, in the file's own coordinate system.
+    pub bounds: Option<[DVec3; 2]>,
     /// Texture coordinates, if any.
     pub coordinates: Vec<Vec2>,
     /// Material indices, if any.
@@ -73,7 +75,7 @@ impl Points {
         let attributes = std::mem::take(&mut arrays.attributes);
         let cloud = cloud(arrays, layout.origin);
         let step = layout.filter.step();
-        let Tally { lacking, clip_lines, weights, counts, .. } = tally;
+        let Tally { lacking, clip_lines, weights, counts, bounds, .. } = tally;
         let has = [0, 1, 2].map(|index| layout.fills(FILTER + index));
         Ok(Self {
             cloud: if dropped.thinned > 0 { cloud.without_sizes() } else { cloud },
@@ -85,6 +87,7 @@ impl Points {
             clip_lines,
             weights,
             counts: counts.map(|counts| counts.of_points(has)),
+            bounds,
             coordinates,
             materials,
             attributes,
