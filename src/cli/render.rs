@@ -329,11 +329,11 @@ fn check_outputs(args: &Render, out: &Output) -> Result<()> {
     }
     let given = || std::iter::once(&args.output).chain(&args.inputs);
     if let Some(json) = &args.json {
-        files::check(json)?;
+        turntable::check_file(args, out, json)?;
         files::check_distinct("--json", json, given())?;
     }
     let Some(camera) = &args.save_camera else { return Ok(()) };
-    files::check(camera)?;
+    turntable::check_file(args, out, camera)?;
     files::check_distinct("--save-camera", camera, given().chain(&args.json))
 }
 

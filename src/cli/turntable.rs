@@ -1,11 +1,12 @@
 //! `surfel render --turntable`: cameras on a circle about the scene.
 
-use super::args;
 use super::pattern::Pattern;
 use super::render::Task;
+use super::{args, files};
 use glam::{DMat4, DQuat, DVec3};
 use std::f64::consts::TAU;
-use std::path::PathBuf;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 use surfel::Result;
 use surfel::formats::atomic;
 use surfel::formats::image::Output;
@@ -26,6 +27,16 @@ pub fn first(args: &args::Render) -> Result<Output> {
 pub fn folder(args: &args::Render, first: &Output) -> Option<PathBuf> {
     let Output::File(path) = first else { return None };
     args.turntable.map(|_| atomic::folder_of(path))
+}
+
+/// Checks that a file can be written, in the folder of the pictures also before that is created.
+pub fn check_file(args: &args::Render, first: &Output, output: &OsString) -> Result<()> {
+    let absolute = |path: &Path| std::path::absolute(path).ok();
+    let own = absolute(&atomic::folder_of(Path::new(output)));
+    match folder(args, first).filter(|folder| !folder.exists()) {
+        Some(folder) if absolute(&folder) == own => Ok(()),
+        _ => files::check(output),
+    }
 }
 
 /// The cameras of a full turn of `count` pictures about the axis `up` through `middle`, counter-clockwise as seen from above. The first is

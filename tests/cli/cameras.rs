@@ -62,6 +62,16 @@ fn a_turntable_creates_its_folder() {
     let common = "--turntable 2 --reference --size 16x16 -q";
     program.run(&format!("render scene:sphere?points=50 -o new/%d.png {common}")).text();
     assert!(["new/0.png", "new/1.png"].iter().all(|name| program.path(name).exists()));
+    let beside = "--save-camera both/camera.json --json ./both/report.json";
+    program.run(&format!("render scene:sphere?points=50 -o both/%d.png {beside} {common}")).text();
+    assert!(
+        ["both/1.png", "both/camera.json", "both/report.json"].iter().all(|name| program.path(name).exists())
+    );
+    for option in ["--json", "--save-camera"] {
+        let run =
+            program.run(&format!("render scene:sphere?points=50 -o a/%d.png {option} b/c.json {common}"));
+        assert!(run.error(1).contains("the folder b does not exist: create it"), "{}", run.err);
+    }
     let run = program.run(&format!("render scene:sphere?points=50 -o no/such/%d.png {common}"));
     assert!(run.error(1).contains("the folder no does not exist: create it"), "{}", run.err);
     program.run(&format!("render missing.ply -o other/%d.png {common}")).error(1);
@@ -71,5 +81,5 @@ fn a_turntable_creates_its_folder() {
             .error(2)
             .contains(".png or .exr")
     );
-    assert_eq!(program.files(), ["new"]);
+    assert_eq!(program.files(), ["both", "new"]);
 }
