@@ -1,22 +1,24 @@
 //! `surfel render`.
 
+mod outputs;
+
 use super::args::{ColorBar, PassTimes, Render};
 use super::camera::{self, Room};
 use super::cut::{self, Cut};
-use super::report::{Gpu, HalfError, Report};
-use super::{files, progress, reference, summary, turntable, undrawn, vulkan};
+use super::report::{Gpu, HalfError};
+use super::{progress, reference, summary, turntable, undrawn, vulkan};
+use outputs::Pictures;
 use std::path::Path;
 use surfel::embed::Measured;
 use surfel::estimate::Estimate;
-use surfel::formats::atomic;
-use surfel::formats::camera as camera_file;
-use surfel::formats::colour_bar::{ColourBar, write_with};
+use surfel::formats::colour_bar::ColourBar;
 use surfel::formats::image::Output;
 use surfel::frame::times::Times;
 use surfel::geometry::{Camera, Extent, Levels, Model, Parts, Pose, SurfelFormat};
-use surfel::load::{Coloured, Colouring, LoadOptions, SuggestedShading, Uncoloured, load};
+use surfel::load::{Coloured, Colouring, LoadOptions, LoadedModel, SuggestedShading, Uncoloured, load};
 use surfel::settings::methods::{Method, pull_push};
 use surfel::settings::{Hierarchy, Shading};
+use surfel::vk::DeviceOptions;
 use surfel::{Error, Outputs, Picture, Progress, Result, Settings, SplatCounts, thousands};
 
 /// A picture to render, with Vulkan or the reference.
@@ -62,23 +64,60 @@ pub struct Outcome {
 /// Renders inputs to a picture. Arguments, outputs and inputs are checked before the device is opened, cheap checks first.
 pub fn run(args: &Render) -> Result<()> {
     let out = turntable::first(args)?;
-    check_outputs(args, &out)?;
+    outputs::check(args, &out)?;
     let asked = args.method()?;
     let first = args.settings(&asked.unwrap_or(Method::ALL[0]));
     first.check()?;
-    let octree = args.render_settings.hierarchy == Hierarchy::Paper;
-    if octree {
+    if has_octree(args) {
         cut::check(&first)?;
     }
     let device = vulkan::options(&args.backend.device)?;
     let file = camera::read(&args.camera)?;
-    let colouring = args.colours.colouring()?;
-    check_colours(args, colouring.as_ref(), &out)?;
+    let options = load_options(args, &first, file, &out)?;
     let bars = progress::bars(args.quiet);
-    let options = LoadOptions {
+    let mut loaded = load(&args.inputs, &options, &*bars)?;
+    let method = method(asked, &loaded.model)?;
+    let settings = settings(args, &method, &loaded)?;
+    print_assumptions(args, file, &settings, &loaded);
+    let Framed { extent, pose, camera, bar } = framed(args, file, &loaded, settings.shading, &out)?;
+    let backs = undrawn::culled_backs(&loaded.model.surfels, &camera, &settings);
+    backs.iter().filter(|_| !args.quiet).for_each(|note| progress::say(note));
+    let contents = summary::parts(&loaded.model);
+    let (cut, levels) = hierarchy(args, &settings, &mut loaded.model, &camera, &*bars)?;
+    let scene = parts(&loaded.model, levels.as_ref(), SurfelFormat::quantized(args.backend.quantize));
+    let (layers, size, frames, progress) = (args.outputs(), args.size, args.frames, &*bars);
+    let (cut, split) = (cut.as_ref(), args.times == Some(PassTimes::Split));
+    let task = Task { scene, cut, method, camera, pose, settings, size, layers, frames, split, progress };
+    let mut outcome = render(args, &task, &device)?;
+    if backs.is_none() {
+        warn_if_empty(args, &outcome.picture, &task, &extent);
+    }
+    let pictures = Pictures { args, out: &out, bar: bar.as_ref(), task: &task, device: &device };
+    pictures.write_first(&mut outcome.picture)?;
+    pictures.write_turn(extent.centre(), loaded.up)?;
+    outputs::write_texts(args, &loaded, &task, &outcome)?;
+    print_summary(args, &contents, &outcome);
+    Ok(())
+}
+
+/// Whether surfels are drawn by the cut of an octree.
+fn has_octree(args: &Render) -> bool {
+    args.render_settings.hierarchy == Hierarchy::Paper
+}
+
+/// The options of loading for a method with these settings.
+fn load_options(
+    args: &Render,
+    settings: &Settings,
+    file: Option<(&Path, Pose)>,
+    out: &Output,
+) -> Result<LoadOptions> {
+    let colouring = args.colours.colouring()?;
+    check_colours(args, colouring.as_ref(), out)?;
+    Ok(LoadOptions {
         columns: args.points.columns.clone(),
         filter: args.points.filter(),
-        estimate: Estimate { bare: first.draws_points(), ..args.points.estimate() },
+        estimate: Estimate { bare: settings.draws_points(), ..args.points.estimate() },
         polygons: args.points.polygons,
         points: args.points.points,
         colouring,
@@ -86,13 +125,14 @@ pub fn run(args: &Render) -> Result<()> {
         up: camera::up(&args.camera, file),
         texture: args.colours.texture()?,
         ..Default::default()
-    };
-    let mut loaded = load(&args.inputs, &options, &*bars)?;
-    let method = method(asked, &loaded.model)?;
+    })
+}
+
+/// The settings of a method, with the shading and ambient occlusion that the model suggests where none is given.
+fn settings(args: &Render, method: &Method, loaded: &LoadedModel) -> Result<Settings> {
     let [shading_given, ao_given] = args.render_settings.chosen_shading();
-    let settings = args.settings(&method);
-    let points = settings.draws_points();
-    let suggested = if points { SuggestedShading::POINTS } else { loaded.shading() };
+    let settings = args.settings(method);
+    let suggested = if settings.draws_points() { SuggestedShading::POINTS } else { loaded.shading() };
     let settings = Settings {
         shading: if shading_given { settings.shading } else { suggested.shading },
         ao: if ao_given { settings.ao } else { suggested.ao },
@@ -100,80 +140,85 @@ pub fn run(args: &Render) -> Result<()> {
     };
     settings.check()?;
     settings.check_outputs(args.outputs())?;
-    if !args.quiet {
-        let input = args.inputs.first().map_or(Path::new(""), Path::new);
-        let given = summary::Given {
-            up: camera::up(&args.camera, file).is_some(),
-            shading: shading_given || points,
-            ao: ao_given || points,
-        };
-        summary::assumptions(input, given, &loaded).iter().for_each(|line| progress::say(line));
+    Ok(settings)
+}
+
+/// Prints what is assumed of inputs that do not tell, unless the program is quiet.
+fn print_assumptions(args: &Render, file: Option<(&Path, Pose)>, settings: &Settings, loaded: &LoadedModel) {
+    if args.quiet {
+        return;
     }
+    let [shading_given, ao_given] = args.render_settings.chosen_shading();
+    let points = settings.draws_points();
+    let input = args.inputs.first().map_or(Path::new(""), Path::new);
+    let given = summary::Given {
+        up: camera::up(&args.camera, file).is_some(),
+        shading: shading_given || points,
+        ao: ao_given || points,
+    };
+    summary::assumptions(input, given, loaded).iter().for_each(|line| progress::say(line));
+}
+
+/// The camera of the picture, with the colour bar beside the scene.
+struct Framed {
+    extent: Extent,
+    pose: Pose,
+    camera: Camera,
+    bar: Option<ColourBar>,
+}
+
+/// The camera of the options, which by default frames the model, or all of its turn.
+fn framed(
+    args: &Render,
+    file: Option<(&Path, Pose)>,
+    loaded: &LoadedModel,
+    shading: Shading,
+    out: &Output,
+) -> Result<Framed> {
     let extent = Extent::of(&loaded.model);
     let extent = extent.ok_or_else(|| undrawn::nothing(&names(args), &loaded.model))?;
-    let (middle, up) = (extent.centre(), loaded.up);
-    let framed = args.turntable.map(|_| extent.turned_about(middle, up));
-    let bar = colour_bar(args, loaded.coloured.as_ref(), settings.shading, &out)?;
+    let turned = args.turntable.map(|_| extent.turned_about(extent.centre(), loaded.up));
+    let bar = colour_bar(args, loaded.coloured.as_ref(), shading, out)?;
     let room = Room { size: args.size, bar: bar.as_ref().map_or(0, |bar| bar.width(args.size)) };
-    let (pose, camera) = camera::make(&args.camera, file, framed.as_ref().unwrap_or(&extent), up, room)?;
-    let backs = undrawn::culled_backs(&loaded.model.surfels, &camera, &settings);
-    backs.iter().filter(|_| !args.quiet).for_each(|note| progress::say(note));
-    let contents = summary::parts(&loaded.model);
-    let has_levels = !octree && (settings.lod > 0.0 || settings.max_points.is_some());
-    let mut points = || std::mem::take(&mut loaded.model.surfels);
-    let cut = octree.then(|| Cut::new(points(), &settings, args.size, &*bars)).transpose()?;
-    let levels = has_levels.then(|| Levels::of(points())).transpose()?;
-    if let Some(cut) = &cut {
-        loaded.model.surfels = cut.surfels(&camera)?;
+    let (pose, camera) =
+        camera::make(&args.camera, file, turned.as_ref().unwrap_or(&extent), loaded.up, room)?;
+    Ok(Framed { extent, pose, camera, bar })
+}
+
+/// Moves the surfels of the model to the octree or the levels of detail that the options choose, if any. With an octree the model gets the
+/// camera's cut.
+fn hierarchy(
+    args: &Render,
+    settings: &Settings,
+    model: &mut Model,
+    camera: &Camera,
+    progress: &dyn Progress,
+) -> Result<(Option<Cut>, Option<Levels>)> {
+    if has_octree(args) {
+        let cut = Cut::new(std::mem::take(&mut model.surfels), settings, args.size, progress)?;
+        model.surfels = cut.surfels(camera)?;
+        return Ok((Some(cut), None));
     }
-    let scene = parts(&loaded.model, levels.as_ref(), SurfelFormat::quantized(args.backend.quantize));
-    let (layers, size, frames, progress) = (args.outputs(), args.size, args.frames, &*bars);
-    let split = args.times == Some(PassTimes::Split);
-    let cut = cut.as_ref();
-    let task = Task { scene, cut, method, camera, pose, settings, size, layers, frames, split, progress };
+    let has_levels = settings.lod > 0.0 || settings.max_points.is_some();
+    let levels = has_levels.then(|| Levels::of(std::mem::take(&mut model.surfels))).transpose()?;
+    Ok((None, levels))
+}
+
+/// Renders the picture, with Vulkan or the reference.
+fn render(args: &Render, task: &Task<'_>, device: &DeviceOptions) -> Result<Outcome> {
+    if args.backend.reference {
+        return reference::render(task);
+    }
     let counts = args.json.is_some();
     let wanted = Measured { times: counts || args.times.is_some(), counts };
-    let mut outcome = if args.backend.reference {
-        reference::render(&task)?
-    } else {
-        vulkan::render(&task, &device, &args.backend, wanted)?
-    };
-    let is_reported = backs.is_some();
-    let empty = || undrawn::empty_picture(&outcome.picture, &task, &extent.bounds(), &given(args));
-    if let Some(warning) = (!is_reported).then(empty).flatten() {
+    vulkan::render(task, device, &args.backend, wanted)
+}
+
+/// Warns if the picture shows next to nothing, with the cause.
+fn warn_if_empty(args: &Render, picture: &Picture, task: &Task<'_>, extent: &Extent) {
+    if let Some(warning) = undrawn::empty_picture(picture, task, &extent.bounds(), &given(args)) {
         log::warn!("{warning}");
     }
-    if !out.is_png() {
-        keep_layers(&mut outcome.picture, task.layers);
-    }
-    if let Some(folder) = turntable::folder(args, &out) {
-        atomic::create_folder(&folder, "cannot write")?;
-    }
-    write_with(&outcome.picture, task.settings.shading, bar.as_ref(), &out)?;
-    if let Some((count, pattern)) = args.turntable.zip(turntable::pattern(args)?) {
-        let cameras = turntable::cameras(&camera, middle, up, count);
-        let others = &cameras[1..];
-        let save = |number: usize, mut picture: Picture| {
-            if !out.is_png() {
-                keep_layers(&mut picture, task.layers);
-            }
-            let out = Output::parse(&pattern.file(number as u32 + 1));
-            write_with(&picture, task.settings.shading, bar.as_ref(), &out)
-        };
-        if args.backend.reference {
-            reference::turn(&task, others, save)?;
-        } else {
-            vulkan::turn(&task, &device, &args.backend, others, save)?;
-        }
-    }
-    if let Some(output) = &args.save_camera {
-        files::write_text(output, &camera_file::text(&pose))?;
-    }
-    if let Some(output) = &args.json {
-        files::write_text(output, &Report::new(args, &loaded, &task, &outcome)?.to_json()?)?;
-    }
-    print_summary(args, &contents, &outcome);
-    Ok(())
 }
 
 /// The inputs, in words.
@@ -313,28 +358,6 @@ fn print_summary(args: &Render, contents: &str, outcome: &Outcome) {
         let out = Path::new(&args.output).display();
         progress::say(&format!("{out}: {width}x{height}, {contents}{drawn}"));
     }
-}
-
-/// Checks that the outputs can be written, and that report and camera overwrite no other file.
-fn check_outputs(args: &Render, out: &Output) -> Result<()> {
-    match turntable::folder(args, out).filter(|folder| !folder.exists()) {
-        Some(folder) => {
-            out.check_name()?;
-            atomic::check_folder(&folder)?;
-        }
-        None => out.check()?,
-    }
-    if out.is_png() && !args.layers.is_empty() {
-        return Err(Error::Usage("--layers are written to EXR alone: name the picture .exr".into()));
-    }
-    let given = || std::iter::once(&args.output).chain(&args.inputs);
-    if let Some(json) = &args.json {
-        turntable::check_file(args, out, json)?;
-        files::check_distinct("--json", json, given())?;
-    }
-    let Some(camera) = &args.save_camera else { return Ok(()) };
-    turntable::check_file(args, out, camera)?;
-    files::check_distinct("--save-camera", camera, given().chain(&args.json))
 }
 
 /// The scene, with its levels of detail if there are any.

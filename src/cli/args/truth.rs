@@ -1,7 +1,7 @@
 //! Options of `surfel truth`.
 
-use super::{Background, Camera, Layer, background, choice, size};
-use crate::cli::values::{Filter, positive, whole};
+use super::{Camera, Layer, choice, size};
+use crate::cli::values::{Background, Filter, background, positive, whole};
 use clap::Args;
 use std::ffi::OsString;
 use surfel::formats;
