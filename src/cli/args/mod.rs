@@ -54,7 +54,7 @@ pub enum Command {
     /// Opens a window that shows points interactively
     #[cfg(feature = "viewer")]
     View(Box<View>),
-    /// Prints the contents of files and scenes, and what of them has to be estimated
+    /// Prints the contents of files and scenes, and how many normals and radii have to be estimated
     Info(Box<Info>),
     /// Estimates surfels from points, and writes them, or the points alone, to a file
     Convert(Box<Convert>),
@@ -127,7 +127,7 @@ pub struct Completions {
 /// Options of `surfel man`.
 #[derive(Args, Debug)]
 pub struct Man {
-    /// The folder; it is created if only it is missing
+    /// The folder; the command creates it if its parent exists
     pub folder: PathBuf,
 }
 
@@ -140,7 +140,7 @@ pub struct Render {
     /// The picture: .png (sRGB, or `-` for standard output) or .exr (linear light)
     #[arg(short, long, value_name = "OUT")]
     pub output: OsString,
-    /// Renders N pictures on a full turn about the scene's up axis; OUT is a pattern such as frames/%04d.png, whose folder is created if only it is missing
+    /// Renders N pictures on a full turn about the scene's up axis; OUT is a pattern such as frames/%04d.png, whose folder is created if its parent exists
     #[arg(long, value_name = "N", value_parser = whole::<u32>(1..=100_000))]
     pub turntable: Option<u32>,
     /// The method [default: perspective-ewa; pull-push for lines or triangles]; see `surfel methods`

@@ -16,7 +16,7 @@ use surfel::settings::Choice;
 /// How normals and radii are estimated.
 #[derive(Args, Debug)]
 pub struct Points {
-    /// Takes N points of each file that has more, evenly spread, with estimated radii and without lines and faces; of COPC its coarse levels are read alone [default: all, as the file has them]
+    /// Keeps at most N points of each file, evenly spread; of files with more, radii are estimated, and lines and faces left out; of COPC only the coarse levels are read [default: all]
     #[arg(long, value_name = "N", value_parser = whole::<u64>(1..=u64::MAX), allow_hyphen_values = true)]
     pub points: Option<u64>,
     /// Reads points in this box alone, in the files' coordinates: XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX, or XMIN,YMIN,XMAX,YMAX for any z
