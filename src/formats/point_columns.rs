@@ -1,6 +1,7 @@
 //! Attributes of the inputs as columns of a written file of points.
 
 use super::declared::Scalar;
+use super::table::is_colour;
 use super::writer::{Contents, PointSource};
 use crate::geometry::Surfels;
 
@@ -96,11 +97,27 @@ pub fn find(input: &PointSource, name: &str) -> Option<usize> {
     input.attributes.iter().position(|attribute| attribute.name == name)
 }
 
+/// Whether an attribute of an input is one of its coordinates, or of the colours that its points have. A single channel is neither, and only
+/// E57 files have coordinates before a pose.
+fn is_held(input: &PointSource, name: &str) -> bool {
+    let is_channel = |name: &str| {
+        find(input, name).is_some_and(|index| is_colour(input.attributes[index].values.scalar()))
+    };
+    POSITION.contains(&name)
+        || LOCAL.contains(&name) && input.survey.has_scans()
+        || COLOURS.contains(&name) && COLOURS.into_iter().all(is_channel)
+}
+
 /// All attributes but coordinates and colours, in the order of the inputs.
 fn columns(inputs: &[PointSource]) -> Vec<Column> {
     let mut columns: Vec<Column> = Vec::new();
-    let others = |name: &str| ![POSITION, LOCAL, COLOURS].concat().contains(&name);
-    for attribute in inputs.iter().flat_map(|input| &input.attributes).filter(|a| others(&a.name)) {
+    let other = |input: &PointSource, name: &str| find(input, name).filter(|_| !is_held(input, name));
+    for (input, attribute) in
+        inputs.iter().flat_map(|input| input.attributes.iter().map(move |attribute| (input, attribute)))
+    {
+        if is_held(input, &attribute.name) {
+            continue;
+        }
         let scalar = attribute.values.scalar();
         match columns.iter_mut().find(|column| column.name == attribute.name) {
             Some(column) if column.scalar == scalar => {}
@@ -108,7 +125,7 @@ fn columns(inputs: &[PointSource]) -> Vec<Column> {
             None => columns.push(Column {
                 name: attribute.name.clone(),
                 scalar,
-                inputs: inputs.iter().map(|input| find(input, &attribute.name)).collect(),
+                inputs: inputs.iter().map(|input| other(input, &attribute.name)).collect(),
             }),
         }
     }

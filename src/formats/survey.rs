@@ -37,6 +37,15 @@ impl Survey {
         }
     }
 
+    /// Whether the points are those of scans of an E57 file.
+    pub(super) fn has_scans(&self) -> bool {
+        #[cfg(feature = "e57")]
+        let is_empty = self.scans.is_empty();
+        #[cfg(not(feature = "e57"))]
+        let is_empty = true;
+        !is_empty
+    }
+
     /// Coordinate system as well-known text, if the file has it.
     pub fn coordinate_system(&self) -> Option<&str> {
         self.coordinate_system.as_deref()

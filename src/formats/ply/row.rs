@@ -4,6 +4,7 @@ use super::lines::TUBE;
 use super::materials;
 use super::write::FileContents;
 use crate::formats::disc;
+use crate::formats::point_columns::POSITION;
 use crate::formats::table::columns::{MATERIAL_NAME, TANGENT_NAMES};
 use crate::geometry::srgb;
 use crate::geometry::{Colours, Material, Primitives};
@@ -24,7 +25,7 @@ pub(super) struct Row<'a> {
     srgb: [u8; 3],
     tangent: [f32; 3],
     material: i32,
-    /// Names of the inputs' properties.
+    /// Names of the inputs' properties, which differ from those of the own fields that the element declares.
     names: &'a [String],
     /// Their numbers; vertices have none.
     numbers: Vec<f64>,
@@ -93,52 +94,59 @@ fn colour(own: Option<&Colours>, others: Option<&Colours>, i: usize) -> ([f32; 3
     }
 }
 
+impl Row<'_> {
+    /// The number of an input's property, NaN if the point has none; `None` for other names.
+    fn input(&self, name: &str) -> Option<f64> {
+        let number = self.names.iter().position(|own| own == name)?;
+        Some(self.numbers.get(number).copied().unwrap_or(f64::NAN))
+    }
+}
+
+/// Each type looks among the inputs' properties first: these may have the name of an own field that the element does not declare.
 impl PropertyAccess for Row<'_> {
     fn new() -> Self {
         Self::default()
     }
 
     fn get_double(&self, name: &String) -> Option<f64> {
-        if let Some(axis) = ["x", "y", "z"].iter().position(|axis| axis == name) {
-            return Some(self.position[axis]);
-        }
-        let number = self.names.iter().position(|own| own == name)?;
-        Some(self.numbers.get(number).copied().unwrap_or(f64::NAN))
+        self.input(name).or_else(|| named(&POSITION, &self.position.to_array(), name))
     }
 
     fn get_float(&self, name: &String) -> Option<f32> {
-        named(&disc::NAMES, &self.disc, name)
+        self.input(name)
+            .map(|number| number as f32)
+            .or_else(|| named(&disc::NAMES, &self.disc, name))
             .or_else(|| named(&CHANNELS, &self.linear, name))
             .or_else(|| named(&TANGENT_NAMES, &self.tangent, name))
             .or_else(|| self.get_double(name).map(|value| value as f32))
     }
 
     fn get_int(&self, name: &String) -> Option<i32> {
-        if name == MATERIAL_NAME {
-            Some(self.material)
-        } else {
-            self.get_double(name).map(|value| value as i32)
-        }
+        let number = self.input(name).map(|number| number as i32);
+        number.or_else(|| (name == MATERIAL_NAME).then_some(self.material))
     }
 
     fn get_uchar(&self, name: &String) -> Option<u8> {
-        named(&CHANNELS, &self.srgb, name).or_else(|| Some(self.get_float(name)? as u8))
+        self.input(name)
+            .map(|number| number as u8)
+            .or_else(|| named(&CHANNELS, &self.srgb, name))
+            .or_else(|| Some(self.get_float(name)? as u8))
     }
 
     fn get_char(&self, name: &String) -> Option<i8> {
-        self.get_double(name).map(|value| value as i8)
+        self.input(name).map(|number| number as i8)
     }
 
     fn get_short(&self, name: &String) -> Option<i16> {
-        self.get_double(name).map(|value| value as i16)
+        self.input(name).map(|number| number as i16)
     }
 
     fn get_ushort(&self, name: &String) -> Option<u16> {
-        self.get_double(name).map(|value| value as u16)
+        self.input(name).map(|number| number as u16)
     }
 
     fn get_uint(&self, name: &String) -> Option<u32> {
-        self.get_double(name).map(|value| value as u32)
+        self.input(name).map(|number| number as u32)
     }
 }
 

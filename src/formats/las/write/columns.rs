@@ -2,12 +2,40 @@
 
 use crate::formats::declared::Scalar;
 use crate::formats::las::fields::Field;
-use crate::formats::point_columns::Column;
+use crate::formats::point_columns::{COLOURS, Column};
 use crate::formats::point_table::PointTable;
+use crate::formats::writer::Written;
 use rayon::prelude::*;
+
+/// Fields of wave packets, whose data are elsewhere in the file.
+pub const WAVES: [&str; 7] = [
+    "wavepacket_index",
+    "wavepacket_offset",
+    "wavepacket_size",
+    "return_point_wave_location",
+    "x_t",
+    "y_t",
+    "z_t",
+];
 
 /// Name of the intensity.
 const INTENSITY: &str = "intensity";
+
+/// The attributes of the inputs without wave packets and single channels of colours; says in `written` that these are left out.
+pub fn held<'a>(table: &'a PointTable, written: &mut Written) -> Vec<&'a Column> {
+    let all = table.columns.all.iter();
+    let (waves, others): (Vec<&Column>, Vec<&Column>) =
+        all.partition(|column| WAVES.contains(&column.name.as_str()));
+    let (channels, others): (Vec<&Column>, Vec<&Column>) =
+        others.into_iter().partition(|column| COLOURS.contains(&column.field_name().as_str()));
+    let names = |columns: Vec<&Column>| columns.into_iter().map(|column| column.name.clone()).collect();
+    written.leave_out(names(waves), "wave packets are not written");
+    written.leave_out(
+        names(channels),
+        "no colours, which are three channels, and LAS has these names for colours alone",
+    );
+    others
+}
 
 /// Smallest and largest number of a column, and whether all are whole.
 #[derive(Clone, Copy, Debug, PartialEq)]

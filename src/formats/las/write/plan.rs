@@ -1,6 +1,6 @@
 //! Point format, header and fields of a written file.
 
-use super::columns::{Range, intensity_scale};
+use super::columns::{Range, held, intensity_scale};
 use super::octree::Cube;
 use super::scale::{Scale, Stored, bounds};
 use super::{copc, records};
@@ -23,17 +23,6 @@ const CHUNK: usize = 50_000;
 
 /// Names of normals that other programs show.
 const NORMALS: [&str; 3] = ["NormalX", "NormalY", "NormalZ"];
-
-/// Fields of wave packets, whose data are elsewhere in the file.
-pub const WAVES: [&str; 7] = [
-    "wavepacket_index",
-    "wavepacket_offset",
-    "wavepacket_size",
-    "return_point_wave_location",
-    "x_t",
-    "y_t",
-    "z_t",
-];
 
 /// Largest description of extra bytes: a record has at most 65,535 bytes.
 const MOST_EXTRAS: usize = 341;
@@ -87,13 +76,7 @@ impl<'a> Plan<'a> {
     /// The plan for a table; says in `written` what is rounded and what is left out.
     pub fn of(table: &'a PointTable, storage: Storage, written: &mut Written) -> Parsed<Self> {
         written.leave_out_elements(table);
-        let (waves, columns): (Vec<&Column>, Vec<&Column>) =
-            table.columns.all.iter().partition(|column| WAVES.contains(&column.name.as_str()));
-        written.leave_out(
-            waves.iter().map(|column| column.name.clone()).collect(),
-            "wave packets are not written",
-        );
-        let mapped = columns.into_iter().map(|column| {
+        let mapped = held(table, written).into_iter().map(|column| {
             let name = column.field_name();
             let range = Range::of(table, column);
             Mapped { column, name, range }

@@ -76,7 +76,7 @@ fn las_files_are_written_bit_by_bit_in_their_order() {
             // x y z are whole steps of equal scales: equal numbers are equal integers.
             let kept = |attribute: &&Attribute| {
                 !attribute.name.starts_with("wavepacket")
-                    && !super::plan::WAVES.contains(&attribute.name.as_str())
+                    && !super::columns::WAVES.contains(&attribute.name.as_str())
             };
             let expected: Vec<_> = before.inputs[0].attributes.iter().filter(kept).collect();
             assert!(expected.len() > 12, "{number}");
@@ -199,6 +199,18 @@ fn what_fields_do_not_hold_is_scaled_or_named() {
     assert_eq!(numbers(&after, "intensity"), [0.0, 65535.0, 32768.0]);
     assert_eq!(numbers(&after, "user_data"), [4.0, 5.0, 6.0]);
     assert_eq!(numbers(&after, "gps_time"), [7.0, 0.0, 9.0], "no NaN is written");
+}
+
+#[test]
+fn single_channels_are_no_colours() {
+    let folder = tempfile::tempdir().unwrap();
+    let before = ply("x y z red scalar_Green local_x", &["0 0 0 1 2 3", "1 2 3 4 5 6"]);
+    let (path, Written { left_out, .. }) = written(&folder, "a.las", &before);
+    let why = "no colours, which are three channels, and LAS has these names for colours alone";
+    assert_eq!(left_out, [format!("red scalar_Green: {why}")]);
+    let after = open(&path);
+    assert_eq!(numbers(&after, "local_x"), [3.0, 6.0]);
+    assert_eq!(after.inputs[0].survey.las.as_ref().unwrap().raw.version.minor, 2);
 }
 
 #[test]
@@ -337,7 +349,7 @@ fn every_point_format_is_written_in_the_order_of_an_octree() {
         // The intensity numbers the points.
         let rows = matched(&after, &before, "intensity");
         for Attribute { name, values } in &before.inputs[0].attributes {
-            if super::plan::WAVES.contains(&name.as_str()) || name.starts_with("wavepacket") {
+            if super::columns::WAVES.contains(&name.as_str()) || name.starts_with("wavepacket") {
                 continue;
             }
             let found = attribute(&after, name);

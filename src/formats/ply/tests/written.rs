@@ -264,10 +264,11 @@ fn properties_of_inputs_keep_their_types_and_names() {
     let text = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n\
                 property float nx\nproperty float ny\nproperty float nz\nproperty char temperature\n\
                 property ushort intensity\nproperty uint number\nproperty int change\nproperty short shift\n\
-                property uchar class\nproperty float part\nproperty double gps_time\nproperty list uchar int near\n\
-                end_header\n\
-                0 0 0 0 0 1 -7 40000 4000000000 -2000000000 -300 9 0.25 1e300 1 5\n\
-                1 0 0 0 0 1 7 2 3 4 5 6 nan 0.1 0\n";
+                property uchar class\nproperty float part\nproperty double gps_time\nproperty float tx\n\
+                property int material_index\nproperty float clip0x\nproperty float surfel_weight0\n\
+                property uchar red\nproperty double local_x\nproperty list uchar int near\nend_header\n\
+                0 0 0 0 0 1 -7 40000 4000000000 -2000000000 -300 9 0.25 1e300 0.1 7 0.25 0.5 9 -3 1 5\n\
+                1 0 0 0 0 1 7 2 3 4 5 6 nan 0.1 0.2 -8 0.75 0.125 8 1e9 0\n";
     let (surfels, source, _) = reversed(read_bytes("a.ply", text.as_bytes(), &others()).unwrap());
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("b.ply");
@@ -289,7 +290,7 @@ fn properties_of_inputs_keep_their_types_and_names() {
     let expected: Vec<_> =
         numbers(&source).into_iter().map(|(name, scalar, [a, b])| (name, scalar, [b, a])).collect();
     assert_eq!(format!("{:?}", numbers(&kept)), format!("{expected:?}"));
-    assert_eq!(expected.len(), 8);
+    assert_eq!(expected.len(), 14);
     let mut odd = source.clone();
     (odd.attributes[0].name, odd.attributes[1].name) = ("radius".into(), "of scan".into());
     let written = write(&odd, &surfels);
