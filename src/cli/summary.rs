@@ -50,8 +50,8 @@ pub fn assumptions(input: &Path, given: Given, loaded: &LoadedModel) -> Vec<Stri
     });
     let suggested = loaded.shading();
     let shading = (!given.shading && suggested.shading == Shading::Edl).then(|| {
-        let (part, what) = match loaded.scattered() >= loaded.billboards() {
-            true => (loaded.scattered(), "normals are unlike their neighbours'"),
+        let (part, what) = match loaded.scattered >= loaded.billboards() {
+            true => (loaded.scattered, "normals are unlike their neighbours'"),
             false => (loaded.billboards(), "points are on no surface"),
         };
         let part = 100.0 * part;

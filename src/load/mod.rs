@@ -94,6 +94,9 @@ pub struct LoadedModel {
     pub counts: FilterCounts,
     /// Where normals and radii come from.
     pub estimated: Estimated,
+    /// Part of the surfels whose normals are unlike their neighbours': as counted, [`Estimated::scattered`], or as the file of all these points
+    /// and normals states, [`Metadata::scattered`].
+    pub scattered: f64,
     /// The up direction, a unit vector: the requested one, otherwise that of the first input, as [`Loaded::up`].
     pub up: DVec3,
     /// What the points were coloured by; `None` for their own colours.
@@ -183,7 +186,7 @@ impl Load<'_> {
             model.into_iter().for_each(|model| self.listener.preview(preview(model)));
         }
         let is_bare = parts.iter().all(|part| part.is_bare);
-        let (model, estimated) = self.merge(parts)?;
+        let (model, estimated, scattered) = self.merge(parts)?;
         skipped.sort();
         skipped.dedup();
         let mut loaded = LoadedModel {
@@ -192,6 +195,7 @@ impl Load<'_> {
             dropped,
             counts: counts.unwrap_or_default(),
             estimated,
+            scattered,
             up,
             coloured,
             suggestion,
@@ -306,17 +310,20 @@ impl Load<'_> {
         let all = Part::merge(parts)?;
         let before = all.cloud.len();
         let cloud = all.cloud.thin(voxel).map_err(|error| error.in_input(all.name.as_str()))?;
+        let scattered = if cloud.len() == before { all.scattered } else { 0.0 };
         let [before, after] = [before, cloud.len()].map(|count| thousands(count as u64));
         self.listener.note(&format!("{}: {before} points thinned to {after}", all.name));
-        Ok(Part { cloud, ..all })
+        Ok(Part { cloud, scattered, ..all })
     }
 
-    /// Estimates each part and merges all to one model.
-    fn merge(&self, parts: Vec<Part>) -> Result<(Model, Estimated)> {
+    /// Estimates each part and merges all to one model; returns [`LoadedModel::scattered`], too.
+    fn merge(&self, parts: Vec<Part>) -> Result<(Model, Estimated, f64)> {
         let several = parts.len() > 1;
-        let (mut all, mut total) = (Vec::new(), Estimated::default());
+        let (mut all, mut total, mut scattered) = (Vec::new(), Estimated::default(), 0);
         for part in parts {
+            let stated = part.scattered;
             let (model, estimated) = self.estimate(part)?;
+            scattered += part::scattered(stated, &self.options.estimate, model.surfels.len(), &estimated);
             all.push(model);
             total = total + estimated;
         }
@@ -331,12 +338,13 @@ impl Load<'_> {
         if several {
             model.surfels.sort_morton();
         }
-        Ok((model, total))
+        let scattered = scattered as f64 / model.surfels.len().max(1) as f64;
+        Ok((model, total, scattered))
     }
 
     /// Estimates the model of a part.
     fn estimate(&self, part: Part) -> Result<(Model, Estimated)> {
-        let Part { name, cloud, draws_faces, scattered, .. } = part;
+        let Part { name, cloud, draws_faces, .. } = part;
         let cloud = match &self.options.lines {
             Some(how) => self.to_lines(&name, &cloud, how)?,
             None => cloud,
@@ -349,13 +357,10 @@ impl Load<'_> {
         };
         let progress: &dyn Progress = self.listener;
         let made = cloud.into_model(draws_faces || self.draws_faces(), &how, progress);
-        let (model, mut estimated) = made.map_err(|error| error.in_input(name.as_str()))?;
+        let (model, estimated) = made.map_err(|error| error.in_input(name.as_str()))?;
         if let Some(text) = estimated.summary() {
             self.listener.note(&format!("{name}: {text}"));
         }
-        // Points whose normals the file does not have, though it counts them, are estimated again.
-        let known = (scattered * model.surfels.len() as f64).round() as u64;
-        estimated.scattered = estimated.scattered.max(known);
         Ok((model, estimated))
     }
 

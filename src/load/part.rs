@@ -1,6 +1,7 @@
 //! An input that was read.
 
 use crate::Result;
+use crate::estimate::{Estimate, Estimated, NormalSource};
 use crate::formats::{Metadata, Report};
 use crate::geometry::Cloud;
 use crate::settings::Settings;
@@ -18,7 +19,7 @@ pub(super) struct Part {
     pub scalar: Option<String>,
     /// Whether its points have no normals, faces or lines, but estimated ones.
     pub is_bare: bool,
-    /// Part of the points whose normals mean nothing, as the file tells.
+    /// Part of the points whose normals mean nothing, as the file states of all its points; 0 if only some of them are read.
     pub scattered: f64,
 }
 
@@ -30,8 +31,10 @@ impl Part {
     }
 
     /// The part with what the report of its file tells.
-    pub fn with(self, Report { scalar, metadata, .. }: &Report) -> Self {
+    pub fn with(self, Report { scalar, metadata, points, dropped, .. }: &Report) -> Self {
         let Metadata { estimated, scattered, .. } = *metadata;
+        let is_whole = self.cloud.len() as u64 + dropped.position + dropped.transparent == *points;
+        let scattered = if is_whole { scattered } else { 0.0 };
         Self { scalar: scalar.clone(), is_bare: self.is_bare || estimated, scattered, ..self }
     }
 
@@ -53,12 +56,23 @@ impl Part {
     }
 }
 
+/// Number of surfels whose normals are unlike their neighbours': those that were counted, or, if a file states more, these. Of some formats the
+/// normals of these surfels are missing and estimated again, so that both may count the same ones. What a file states does not hold for
+/// other normals, or without its outliers.
+pub(super) fn scattered(stated: f64, how: &Estimate, surfels: usize, counts: &Estimated) -> u64 {
+    let has_others =
+        how.normals == NormalSource::Estimate || counts.normals_contradictory > 0 || counts.outliers > 0;
+    let stated = if has_others { 0.0 } else { stated * surfels as f64 };
+    counts.scattered.max(stated.round() as u64)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::{self, Contents, WantedAttributes};
+    use crate::formats::{self, Contents, Filter, WantedAttributes};
     use crate::load::{LoadOptions, LoadedModel, SuggestedShading, Suggestion, Uncoloured, load};
     use crate::settings::Shading;
+    use std::num::NonZeroU64;
     use std::path::Path;
 
     /// What the defaults of a picture are: the up direction, the shading, and what points are coloured by.
@@ -127,5 +141,40 @@ mod tests {
                 assert_eq!(again.metadata, loaded.metadata, "{columns}{extension}");
             }
         }
+    }
+
+    #[test]
+    fn what_a_file_states_holds_for_all_its_points_and_normals() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.ply");
+        let header =
+            "ply\nformat ascii 1.0\ncomment surfel normals=estimated scattered=0.5\nelement vertex 400\n";
+        let names: String =
+            ["x", "y", "z", "nx", "ny", "nz"].iter().map(|name| format!("property float {name}\n")).collect();
+        let open = |rows: String, options: LoadOptions| {
+            std::fs::write(&path, format!("{header}{names}end_header\n{rows}")).unwrap();
+            let loaded = load(&[&path], &options, &()).unwrap();
+            assert_eq!(loaded.metadata.scattered, loaded.scattered);
+            (loaded.scattered, loaded.estimated.scattered)
+        };
+        let of_filter = |filter| LoadOptions { filter, ..Default::default() };
+        let of_estimate = |estimate| LoadOptions { estimate, ..Default::default() };
+        let whole = [LoadOptions::default(), LoadOptions { voxel: Some(0.5), ..Default::default() }];
+        for options in whole {
+            assert_eq!(open(wall(), options), (0.5, 0));
+        }
+        let bounds = Some([DVec3::ZERO, DVec3::new(10.0, 20.0, 0.0)]);
+        let others = [
+            of_filter(Filter { every: NonZeroU64::new(2), ..Default::default() }),
+            of_filter(Filter { bounds, ..Default::default() }),
+            LoadOptions { points: Some(200), ..Default::default() },
+            LoadOptions { voxel: Some(2.0), ..Default::default() },
+            of_estimate(Estimate { normals: NormalSource::Estimate, ..Default::default() }),
+        ];
+        for (case, options) in others.into_iter().enumerate() {
+            assert_eq!(open(wall(), options), (0.0, 0), "{case}");
+        }
+        let turned = wall().replace("1 0 0 0 1\n", "1 0 0 0 -1\n").replace("2 0 0 0 1\n", "2 0 0 0 -1\n");
+        assert_eq!(open(turned, LoadOptions::default()), (0.0, 0), "contradictory normals");
     }
 }

@@ -26,7 +26,7 @@ impl SuggestedShading {
 }
 
 impl LoadedModel {
-    /// What shows the points' shape. If many of them are billboards, or have estimated normals that mean nothing ([`Estimated::scattered`]),
+    /// What shows the points' shape. If many of them are billboards, or have estimated normals that mean nothing ([`scattered`](Self::scattered)),
     /// it is [`Shading::Edl`] for points with colours. Of points without, eye-dome lighting shows outlines alone: if many of these are billboards,
     /// it is [`Shading::Lit`] with ambient occlusion. Otherwise it is [`Shading::Lit`].
     pub fn shading(&self) -> SuggestedShading {
@@ -34,7 +34,7 @@ impl LoadedModel {
         let coloured = surfels.colours.is_some() || surfels.texture.is_some() || self.suggestion.is_some();
         let flat = self.billboards() > MOST_BILLBOARDS;
         match coloured {
-            true if flat || self.scattered() > MOST_SCATTERED => {
+            true if flat || self.scattered > MOST_SCATTERED => {
                 SuggestedShading { shading: Shading::Edl, ao: 0.0 }
             }
             false if flat => SuggestedShading { shading: Shading::Lit, ao: Settings::DEFAULT_AO },
@@ -46,12 +46,7 @@ impl LoadedModel {
     pub(super) fn describe(&self, is_bare: bool) -> Metadata {
         let Estimated { two_sided, billboards, .. } = self.estimated;
         let two_sided = two_sided > 0 && two_sided + billboards == self.model.surfels.len() as u64;
-        Metadata { up: Some(self.up), estimated: is_bare, two_sided, scattered: self.scattered() }
-    }
-
-    /// Part of the surfels whose normals are unlike their neighbours': [`Estimated::scattered`].
-    pub fn scattered(&self) -> f64 {
-        self.estimated.scattered as f64 / self.model.surfels.len().max(1) as f64
+        Metadata { up: Some(self.up), estimated: is_bare, two_sided, scattered: self.scattered }
     }
 
     /// Part of the surfels that are billboards.
