@@ -21,6 +21,14 @@ pub struct Metadata {
 pub(super) const OWNER: &str = "surfel";
 
 impl Metadata {
+    /// Whether a text has the form of one that is written: each word is `name=value`.
+    pub(super) fn is_text(text: &str) -> bool {
+        let is_assignment = |word: &str| {
+            word.split_once('=').is_some_and(|(name, value)| !name.is_empty() && !value.is_empty())
+        };
+        text.split_whitespace().all(is_assignment)
+    }
+
     /// Parses a text. What it does not know, as of later versions, is left out.
     pub(super) fn parse(text: &str) -> Self {
         let mut metadata = Self::default();

@@ -2,7 +2,7 @@
 
 use super::Parsed;
 use crate::formats::declared::{Element, Encoding, Kind, Property, Scalar};
-use crate::formats::metadata::OWNER;
+use crate::formats::metadata::{Metadata, OWNER};
 use crate::formats::quoted::quoted;
 use std::collections::HashSet;
 
@@ -21,7 +21,7 @@ pub(super) struct Header {
     pub grid: [Option<u64>; 2],
     /// Name of the first texture, from `comment TextureFile`.
     pub texture: Option<String>,
-    /// Text of the [`Metadata`](crate::formats::Metadata), from `comment surfel`.
+    /// Text of the [`Metadata`], from the last `comment surfel` with such a text.
     pub metadata: Option<String>,
 }
 
@@ -43,8 +43,9 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
         let done = match keyword {
             b"" => Ok(()),
             b"comment" => {
-                parse_comment(line, "TextureFile", &mut texture);
-                parse_comment(line, OWNER, &mut metadata);
+                texture = texture.or_else(|| comment(line, "TextureFile"));
+                let written = comment(line, OWNER).filter(|text| Metadata::is_text(text));
+                metadata = written.or(metadata);
                 Ok(())
             }
             b"obj_info" => {
@@ -68,14 +69,12 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
     Ok(Header { encoding, elements, payload: lines.at, grid, texture, metadata })
 }
 
-/// Reads the text after a keyword from a comment, unless an earlier comment has it; others are ignored. It may contain spaces.
-fn parse_comment(line: &[u8], keyword: &str, found: &mut Option<String>) {
+/// The text after a keyword in a comment, which may contain spaces; `None` for other comments.
+fn comment(line: &[u8], keyword: &str) -> Option<String> {
     let text = String::from_utf8_lossy(line);
-    let text = text.trim_start_matches("comment").trim_start().strip_prefix(keyword);
-    let text = text.filter(|text| text.starts_with(char::is_whitespace)).map(str::trim);
-    if let (None, Some(text)) = (&found, text.filter(|text| !text.is_empty())) {
-        *found = Some(text.into());
-    }
+    let text = text.trim_start_matches("comment").trim_start().strip_prefix(keyword)?;
+    let text = Some(text).filter(|text| text.starts_with(char::is_whitespace)).map(str::trim)?;
+    (!text.is_empty()).then(|| text.into())
 }
 
 /// Reads the size of a range grid from free text.
@@ -278,6 +277,21 @@ mod tests {
                 "case {case}"
             );
         }
+    }
+
+    #[test]
+    fn only_comments_of_assignments_are_metadata() {
+        let metadata = |comments: &str| {
+            parse(format!("ply\nformat ascii 1.0\n{comments}end_header\n").as_bytes()).unwrap().metadata
+        };
+        let notes =
+            "comment surfel reconstruction by Poisson up=0,0,1\ncomment surfel =\ncomment surfels a=b\n";
+        assert_eq!(metadata(notes), None);
+        let own = "comment surfel up=0,0,1 later=2\n";
+        let text = Some("up=0,0,1 later=2".to_owned());
+        assert_eq!(metadata(&(notes.to_owned() + own)), text);
+        assert_eq!(metadata(&(own.to_owned() + notes)), text);
+        assert_eq!(metadata(&format!("comment surfel up=0,1,0\n{own}")), text, "the last one counts");
     }
 
     #[test]

@@ -35,7 +35,8 @@
 //! | `range_grid` | list `vertex_indices` of no vertex or one; `obj_info num_cols`, `num_rows` | triangles between neighbours, where the surface is not torn; [`View::Towards`](crate::geometry::View::Towards) +z |
 //! | `camera` | `view_px view_py view_pz` | [`View::From`](crate::geometry::View::From); all 0, which is what some programs write of any cloud, is not known |
 //!
-//! `comment surfel` followed by [`Metadata`](crate::formats::Metadata) tells the up direction and where the normals come from.
+//! `comment surfel` followed by [`Metadata`](crate::formats::Metadata), words `name=value` alone, tells the up direction and where the normals
+//! come from; the last one counts.
 //!
 //! Triangles are kept only if some point needs a normal or radius from them, if there are lines, or if [`ReadOptions`] request them.
 //! Skipped elements are validated, too: a truncated file is an error, and bytes after its end are counted.
