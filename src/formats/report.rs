@@ -2,6 +2,7 @@
 
 use super::declared::{Element, Encoding};
 use super::filter::FilterCounts;
+use super::gaussians::is_parameter;
 use super::metadata::Metadata;
 use super::survey::Survey;
 use super::table::{Layout, Points, Shape};
@@ -96,6 +97,12 @@ impl Report {
             stated: None,
             trailing: 0,
         }
+    }
+
+    /// Names of the unused vertex properties that a file written from the points should have: not the parameters of Gaussians.
+    pub(crate) fn others(&self) -> Vec<String> {
+        let is_other = |name: &&String| !(self.gaussians && is_parameter(name));
+        self.skipped.iter().filter(is_other).cloned().collect()
     }
 
     /// The report with the metadata of this text, if there is one.

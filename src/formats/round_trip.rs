@@ -23,6 +23,7 @@ pub fn reversed(Loaded { cloud, report, attributes }: Loaded) -> (Surfels, Point
         ..Default::default()
     };
     surfels.permute(&reversed);
-    let source = PointSource { points, attributes, survey: report.survey, skipped: report.skipped };
+    let skipped = report.others();
+    let source = PointSource { points, attributes, survey: report.survey, skipped };
     (surfels, source, cloud)
 }

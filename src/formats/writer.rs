@@ -75,7 +75,7 @@ pub struct PointSource {
     pub attributes: Vec<Attribute>,
     /// What the file tells of all points.
     pub survey: Survey,
-    /// Names of the properties that the model does not hold.
+    /// Names of the properties that the model does not hold, without the parameters of 3D Gaussians.
     pub skipped: Vec<String>,
 }
 

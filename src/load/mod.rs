@@ -269,7 +269,7 @@ impl Load<'_> {
         if self.wanted_attributes() == WantedAttributes::All || !attributes.is_empty() {
             cloud.point_indices = Some(indices(first, points)?);
         }
-        let (survey, skipped) = (std::mem::take(&mut report.survey), report.skipped.clone());
+        let (survey, skipped) = (std::mem::take(&mut report.survey), report.others());
         let source = PointSource { points, attributes, survey, skipped };
         let name = Path::new(input).display().to_string();
         if self.warns {

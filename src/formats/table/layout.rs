@@ -5,6 +5,7 @@ mod tests;
 
 use super::columns::*;
 use crate::formats::declared::{Element, Kind, Property, Scalar};
+use crate::formats::gaussians::is_parameter;
 use crate::formats::quoted::{listed, quoted};
 use crate::formats::source::Parsed;
 use crate::formats::{Filter, ReadOptions, WantedAttributes};
@@ -205,11 +206,13 @@ impl Layout {
             let colours = if matches!(self.colour, Some(Colour::Rgb(_))) { COLOUR..AXES } else { 0..0 };
             (NORMAL..COLUMNS).filter(|column| !colours.contains(column)).any(is_column)
         };
+        let is_gaussian = matches!(self.shape, Shape::Gaussian(_));
+        let is_replaced = |index: &usize| is_gaussian && is_parameter(&properties[*index].name);
         let is_wanted = |index: &usize| match wanted {
             WantedAttributes::None => false,
             WantedAttributes::Named(names) => names.contains(&properties[*index].name),
-            WantedAttributes::Others => !self.columns.contains(&Some(*index)),
-            WantedAttributes::All => !is_held(index),
+            WantedAttributes::Others => !self.columns.contains(&Some(*index)) && !is_replaced(index),
+            WantedAttributes::All => !is_held(index) && !is_replaced(index),
         };
         let scalar = |index: usize| match properties[index].kind {
             Kind::Scalar(scalar) => Some((index, scalar)),

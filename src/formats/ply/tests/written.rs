@@ -299,3 +299,23 @@ fn properties_of_inputs_keep_their_types_and_names() {
         "of scan radius: names that PLY does not hold, which are unique and without spaces"
     );
 }
+
+#[test]
+fn discs_replace_the_parameters_of_gaussians() {
+    use crate::formats::round_trip::{all, reversed};
+    use crate::formats::{self, Contents, WantedAttributes};
+    let names = "x y z f_dc_0 f_dc_1 f_dc_2 f_rest_0 f_rest_44 opacity scale_0 scale_1 scale_2 rot_0 rot_1 rot_2 rot_3 scale_of_map";
+    let names: String = names.split(' ').map(|name| format!("property float {name}\n")).collect();
+    let rows = "0 0 0 1 1 1 2 2 9 0 0 -3 1 0 0 0 5\n1 0 0 1 1 1 2 2 9 0 0 -3 1 0 0 0 6\n";
+    let text = format!("ply\nformat ascii 1.0\nelement vertex 2\n{names}end_header\n{rows}");
+    let others = ReadOptions { attributes: WantedAttributes::Others, ..Default::default() };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("b.ply");
+    for options in [others, all()] {
+        let (surfels, source, _) = reversed(read_bytes("a.ply", text.as_bytes(), &options).unwrap());
+        let contents = Contents { inputs: &[source], ..Contents::of(&surfels) };
+        assert_eq!(formats::write(&path, &contents, &()).unwrap().left_out, [""; 0]);
+        let report = read(&path, &ReadOptions::default(), &()).unwrap().report;
+        assert_eq!((report.skipped, report.gaussians), (vec!["scale_of_map".to_owned()], false));
+    }
+}
