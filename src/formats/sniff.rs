@@ -1,7 +1,7 @@
 //! Identification of unsupported files, for error messages.
 
 use super::quoted::quoted;
-use super::{stl, text};
+use super::{reader, stl, text};
 
 /// First bytes of common file types, and the remedy.
 const KNOWN: &[(&[u8], &str)] = &[
@@ -62,8 +62,9 @@ pub(super) fn name(file: &str, bytes: &[u8], size: u64) -> String {
     match table(beginning) {
         Some(what) => format!("not a point cloud that can be read, but {what}"),
         None => format!(
-            "not a point cloud that can be read: it begins with {}; give a PLY, LAS, LAZ, E57, PCD, PTX, OBJ, glTF, STL, SPLAT, SPZ or text file",
-            quoted(line)
+            "not a point cloud that can be read: it begins with {}; give a {} file",
+            quoted(line),
+            reader::names()
         ),
     }
 }

@@ -66,6 +66,8 @@ fn formats_are_listed_alike() {
         assert!(one_line(&help(&program, command)).contains(&format!("{names} file")), "{command}");
     }
     assert!(text("src/guide/getting-started.md").contains(&format!("An input is a {names} file")));
+    let unknown = program.write("a.dat", "Points:").run("info a.dat");
+    assert!(unknown.error(1).ends_with(&format!("; give a {names} file")), "{}", unknown.err);
     let written = surfel::formats::writable_names();
     assert!(one_line(&help(&program, "convert")).contains(&format!("The file to write: {written}")));
     let refused = program.run("convert scene:sphere -o a.copc");
