@@ -22,12 +22,21 @@ const LOST: u8 = 5;
 /// The validation layers reported a message: an internal software error, as in BSD's sysexits.
 const INVALID: u8 = 70;
 
-/// Prints an error; returns its exit code.
+/// Prints an error; returns its exit code. A program that reads standard output and stops, as `head` does, has what it wants.
 pub fn of_error(error: &Error) -> ExitCode {
+    if is_closed_pipe(error) {
+        return ExitCode::SUCCESS;
+    }
     let detached =
         detached_value(error, std::env::args_os()).map_or(String::new(), |text| format!("; {text}"));
     print_error(&format!("{error}{}{detached}", remedy(error)));
     ExitCode::from(code(error))
+}
+
+/// Whether nothing reads standard output any more.
+fn is_closed_pipe(error: &Error) -> bool {
+    let Error::Io { path, source, .. } = error else { return false };
+    path == Path::new("-") && source.kind() == ErrorKind::BrokenPipe
 }
 
 /// What to write instead, if a file that does not exist comes after an option that takes its value after `=` alone.

@@ -1,6 +1,7 @@
 //! Errors: each gives its exit code and one line with the cause, quickly, and leaves no files.
 
 use crate::program::{Program, surfels};
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 const GOOD: &str = "0 0 0 0 0 1 1";
@@ -211,4 +212,14 @@ fn no_such_device_exits_with_3() {
     );
     assert!(run.error(3).starts_with("no usable Vulkan device: "), "{}", run.err);
     assert_eq!(program.files(), ["a.ply"]);
+}
+
+#[test]
+fn a_reader_of_standard_output_may_stop() {
+    let program = Program::new();
+    let mut command = program.command("scenes");
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    drop(child.stdout.take());
+    let done = child.wait_with_output().unwrap();
+    assert!(done.status.success() && done.stderr.is_empty(), "{}", String::from_utf8_lossy(&done.stderr));
 }
