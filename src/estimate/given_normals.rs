@@ -82,7 +82,7 @@ fn pairs(surfels: &Surfels) -> [usize; 2] {
     };
     let add = |a: [usize; 3], b: [usize; 3]| [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
     let [contradictory, coincident, all] = followed.par_iter().map(of_pair).reduce(|| [0; 3], add);
-    // Of a pair of coincident points, both are next to others of either side.
+    // Each coincident pair explains two antiparallel steps: to it and from it.
     [contradictory.saturating_sub(2 * coincident), all]
 }
 
