@@ -99,8 +99,8 @@ impl Subject {
         }
     }
 
-    /// `points` surfels in Morton order with their curvatures, and the scene's lines and triangles. A scan's normals are the file's, or
-    /// estimated from the remaining points at any number, so that densities differ in nothing else.
+    /// `points` surfels in Morton order with their curvatures, and the scene's lines and triangles. All points of a scan become what `surfel
+    /// render` makes of the file. Fewer are bare points: normals are the file's, or estimated from the remaining points, and radii are new.
     ///
     /// # Errors
     /// As [`scenes::model`]; [`Error::Input`] if a scan's points cannot become surfels.
@@ -117,8 +117,8 @@ impl Subject {
                 Ok(Model { surfels, primitives })
             }
             Shape::Scan(scan) => {
-                let surfels = scan.cloud.some(points as usize).into_surfels(&Estimate::default(), &());
-                Ok(surfels.map_err(|error| error.in_input(self.name.as_str()))?.0.into())
+                let model = scan.cloud.clone().at_most(points).into_model(false, &Estimate::default(), &());
+                Ok(model.map_err(|error| error.in_input(self.name.as_str()))?.0)
             }
         }
     }
@@ -204,4 +204,25 @@ pub fn pixel_angle(from: &Viewpoint, rows: u32) -> f64 {
 fn framing(extent: &Extent, up: DVec3) -> Result<Viewpoint> {
     let Pose { eye, target, up, .. } = extent.pose(up, FOV, 1.0)?;
     Ok(Viewpoint { eye: eye.to_array(), target: target.to_array(), up: up.to_array(), fov_y_deg: FOV })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_points_are_what_render_draws() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("fan.obj");
+        // The vertices of long triangles are replaced by ellipses on them.
+        let rim = (0..40).map(|i| f64::from(i) * 0.15).map(|a| format!("v {} {} 0\n", a.cos(), a.sin()));
+        let faces = (2..41).map(|i| format!("f 1 {i} {}\n", i + 1));
+        std::fs::write(&path, format!("v 0 0 0.2\n{}{}", rim.collect::<String>(), faces.collect::<String>()))
+            .unwrap();
+        let subject = Subject::scan(&path, None, &()).unwrap();
+        let read = formats::read(&path, &ReadOptions { triangles: true, ..Default::default() }, &()).unwrap();
+        let (drawn, _) = read.cloud.into_model(false, &Estimate::default(), &()).unwrap();
+        assert_eq!(subject.model(41).unwrap().surfels, drawn.surfels);
+        assert!(drawn.surfels.len() != 41 && subject.model(40).unwrap().surfels.len() == 40);
+    }
 }

@@ -18,7 +18,8 @@ impl Runner {
                 lighting: own.lighting.clone(),
                 ..Default::default()
             },
-            None => own.clone(),
+            // A model without levels of detail is drawn whole.
+            None => Settings { lod: 0.0, ..own.clone() },
         };
         let key = format!("{} {:?} {settings:?} {camera:?}", job.plan.scene, job.plan.size);
         if let Some(truth) = self.truths.get(&key) {
