@@ -7,14 +7,15 @@ use crate::geometry::{Cloud, Colours, Model, Primitives, Surfels};
 use glam::Vec3;
 
 impl Cloud {
-    /// Converts the cloud to a model: points that a mesh leaves unused are left out; lines become ribbons and tubes; faces become triangles if there are lines, or with `polygons`; the
-    /// points that neither uses become surfels, as [`Cloud::into_surfels`]. All have the cloud's origin.
+    /// Converts the cloud to a model.
+    ///
+    /// Points that a mesh leaves unused are left out. Lines become ribbons and tubes. Faces become triangles if there are lines, or with
+    /// `polygons`. The points that neither uses become surfels, as [`Cloud::into_surfels`]. All have the cloud's origin.
     ///
     /// A tube's vertex without a tangent gets the mean direction of its segments (marroquim2008, section 4.3). A triangle's vertex without
     /// a normal gets that of its faces. A missing radius is 0 where there are only triangles. On a line it is [`Estimate::line_radius`],
     /// otherwise that of the nearest vertex along its line that has one, otherwise 1/2000 of the diagonal of the lines' bounds: about a
     /// pixel in a picture of all. A vertex of tubes that ribbons or triangles share becomes two, with a direction each.
-    /// becomes two, as it has a direction for each.
     ///
     /// # Errors
     /// [`Error::Usage`](crate::Error::Usage) if what is missing cannot be estimated or if a corner is no point.
