@@ -1,6 +1,6 @@
 //! `surfel bench`.
 
-use super::args::Bench;
+use super::args::{Bench, With};
 use super::files::{self, cache_folder, read_json};
 use super::interrupt::{self, Interruptible};
 use super::{progress, rasterizers, vulkan};
@@ -18,8 +18,9 @@ use surfel::bench::{Results, SessionOptions, Suite, code, csv, measure, report, 
 use surfel::formats::{self, atomic};
 use surfel::load::scene;
 use surfel::settings::Choice;
+use surfel::settings::methods::Method;
 use surfel::vk::Device;
-use surfel::{Error, Progress, RasterizerChoice, Result};
+use surfel::{Error, Progress, RasterizerChoice, Result, Settings};
 
 /// Time after which results are written while more are measured.
 const KEEP: Duration = Duration::from_secs(10);
@@ -209,6 +210,7 @@ fn command(args: &Bench, suites: &[Suite]) -> String {
     option("truth", path(&args.truth));
     option("points", list(args.points.iter().map(u64::to_string).collect()));
     option("method", list(args.method.iter().map(|method| method.name.to_owned()).collect()));
+    args.with.iter().for_each(|with| option("with", Some(with.text.clone())));
     option("size", args.size.map(|[width, height]| format!("{width}x{height}")));
     let named = suites.iter().filter(|suite| **suite != Suite::Inputs);
     option("suite", list(named.map(|suite| suite.name().to_owned()).collect()));
@@ -233,6 +235,21 @@ fn device(args: &Bench) -> Result<Option<Arc<Device>>> {
         }
         Err(error) => Err(error),
     }
+}
+
+/// The settings of `--with`, of each method that can render so.
+fn variants(args: &Bench) -> Result<Vec<(Method, Settings)>> {
+    let methods = if args.method.is_empty() { &Method::OWN[..] } else { &args.method };
+    let of = |with: &With| {
+        let all = methods.iter().map(|method| Ok((*method, with.settings(method)?)));
+        let (able, unable): (Vec<_>, Vec<_>) = all.partition(Result::is_ok);
+        if able.is_empty() {
+            return unable.into_iter().take(1).collect::<Result<Vec<_>>>();
+        }
+        unable.into_iter().filter_map(Result::err).for_each(|error| log::warn!("{error}"));
+        able.into_iter().collect()
+    };
+    Ok(args.with.iter().map(of).collect::<Result<Vec<_>>>()?.concat())
 }
 
 /// What the options ask to measure.
@@ -263,6 +280,7 @@ fn wanted(args: &Bench, suites: Vec<Suite>, progress: &dyn Progress) -> Result<S
             points: args.points.clone(),
             size: args.size,
             methods: args.method.clone(),
+            variants: variants(args)?,
             scans,
         },
         device,

@@ -19,7 +19,7 @@ fn an_input_is_measured_stored_and_reported_again() {
     };
     let methods = if_whole("perspective-ewa,pull-push", "perspective-ewa");
     let counts = if_whole("1000,3000", "1000");
-    let arguments = &format!("scene:torus --points {counts} --method {methods} --size 64x64");
+    let arguments = &format!("scene:torus --points {counts} --method {methods} --with --lod=1 --size 64x64");
     let run = program.run(&format!("bench {arguments} --json a.json --csv a.csv --report page"));
     assert!(run.text().contains("scene:torus") && run.text().contains("perspective-ewa"), "{}", run.text());
     let results = json(&program, "a.json");
@@ -28,7 +28,12 @@ fn an_input_is_measured_stored_and_reported_again() {
     let runs = session["runs"].as_array().unwrap();
     for count in counts.split(',') {
         let count: u64 = count.parse().unwrap();
-        assert!(runs.iter().any(|run| run["points"] == count), "{count}");
+        for lod in [0.0, 1.0] {
+            assert!(
+                runs.iter().any(|run| run["points"] == count && run["settings"]["lod"] == lod),
+                "{count} {lod}"
+            );
+        }
     }
     for run in runs {
         assert!(run["refused"].is_null(), "{run}");
@@ -80,6 +85,8 @@ fn invalid_arguments_of_bench_are_refused_first() {
     assert!(refused("scene:none", 2).contains("no such scene"));
     assert!(refused("scene:torus?points=5", 2).contains("leave out `points`"));
     assert!(refused("scene:torus --truth mesh.ply", 2).contains("its own truth"));
+    assert!(refused("scene:torus --with --ao=1", 2).contains("--ao is not measured"));
+    assert!(refused("scene:torus --with --lod=-1", 2).contains("level of detail is -1"));
     assert!(refused("--from later.json --json a --csv a", 2).contains("name two"));
 }
 

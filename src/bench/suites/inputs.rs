@@ -6,8 +6,8 @@ use crate::bench::papers::models::Models;
 use crate::bench::plan::{Measurements, Plan};
 use crate::bench::record::Experiment;
 use crate::bench::subject::Subject;
-use crate::settings::Shading;
 use crate::settings::methods::Method;
+use crate::settings::{Settings, Shading};
 use crate::verify::baseline::Kind;
 use std::rc::Rc;
 
@@ -31,6 +31,8 @@ pub struct UserInputs {
     pub size: Option<[u32; 2]>,
     /// The methods; if empty, [ours](Method::OWN).
     pub methods: Vec<Method>,
+    /// Other settings of methods by which the inputs are rendered as well; their shading is that of each picture.
+    pub variants: Vec<(Method, Settings)>,
     /// Scans that [`Suite::Quick`], the first one only, and [`Suite::Full`] measure beside built-in scenes.
     pub scans: Vec<Rc<Subject>>,
 }
@@ -56,7 +58,9 @@ pub(super) fn plans(suite: Suite, inputs: &UserInputs) -> Vec<Plan> {
         let all = densities.iter().flat_map(|points| shadings.iter().map(|shading| (*points, *shading)));
         all.flat_map(|(points, shading)| {
             let plan = shown(suite, inputs, subject, points, shading);
-            budget(plan, subject, methods, Some(points) == pictured)
+            let mut plans = budget(plan.clone(), subject, methods, Some(points) == pictured);
+            inputs.variants.iter().for_each(|variant| add_variant(&mut plans, &plan, variant));
+            plans
         })
         .collect::<Vec<_>>()
     };
@@ -104,9 +108,20 @@ fn budget(mut plan: Plan, subject: &Subject, methods: &[Method], images: bool) -
     plans
 }
 
+/// Adds the plan by a method with other settings, unless there is such a one already.
+fn add_variant(plans: &mut Vec<Plan>, plan: &Plan, (method, settings): &(Method, Settings)) {
+    let settings = Settings { shading: plan.settings.shading, ..settings.clone() };
+    let variant = Plan { settings, measurements: Measurements::BOTH, ..plan.by(method) };
+    let is_same = |plan: &Plan| *plan == Plan { measurements: plan.measurements, ..variant.clone() };
+    if !plans.iter().any(is_same) {
+        plans.push(variant);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::settings::methods::{confetti, perspective_ewa};
 
     #[test]
     fn densities_of_a_scan_end_with_all_points() {
@@ -116,5 +131,37 @@ mod tests {
         assert_eq!(densities(Some(500), &[]), [500]);
         assert_eq!(densities(Some(100_250), &[200_000, 100_000, 100_000]), [100_000, 100_250]);
         assert_eq!(densities(None, &[200_000, 100_000]), [100_000, 200_000]);
+    }
+
+    #[test]
+    fn variants_are_added_once() {
+        let level = |method: Method| (method, Settings { lod: 2.0, ..method.settings() });
+        let sharp = Settings { lowpass: 0.0, ..perspective_ewa::METHOD.settings() };
+        let inputs = |variants| UserInputs {
+            subjects: vec![Rc::new(Subject::scene("scene:torus").unwrap())],
+            points: vec![1000],
+            methods: vec![perspective_ewa::METHOD],
+            variants,
+            ..Default::default()
+        };
+        let shown = |plans: Vec<Plan>| {
+            plans
+                .into_iter()
+                .map(|plan| (plan.method.map(|method| method.name), plan.settings))
+                .collect::<Vec<_>>()
+        };
+        let without = shown(plans(Suite::Inputs, &inputs(Vec::new())));
+        // The default method without a filter is measured anyway.
+        let variants =
+            vec![level(perspective_ewa::METHOD), (perspective_ewa::METHOD, sharp), level(confetti::METHOD)];
+        let with = shown(plans(Suite::Inputs, &inputs(variants)));
+        let added = with
+            .iter()
+            .filter(|plan| !without.contains(plan))
+            .map(|(name, own)| (*name, own.lod, own.shading));
+        let expected = [Shading::Lit, Shading::Colour]
+            .map(|shading| ["perspective-ewa", "confetti"].map(|name| (Some(name), 2.0, shading)));
+        assert_eq!(added.collect::<Vec<_>>(), expected.concat());
+        assert_eq!(with.len(), without.len() + 4);
     }
 }

@@ -1,6 +1,6 @@
 //! Options of `surfel bench`.
 
-use super::DeviceArgs;
+use super::{DeviceArgs, With};
 use crate::cli::values::{method, one_of, positive, size, whole};
 use clap::Args;
 use std::ffi::OsString;
@@ -24,6 +24,9 @@ pub struct Bench {
     /// Methods that render INPUT [default: all but those as published]
     #[arg(long, value_name = "METHOD,…", value_delimiter = ',', requires = "inputs", value_parser = method())]
     pub method: Vec<Method>,
+    /// Options of `surfel render`, such as '--lod 2' or '--edges nearest --alpha mask': each method renders INPUT with them as well; may be repeated
+    #[arg(long, value_name = "OPTIONS", requires = "inputs", allow_hyphen_values = true)]
+    pub with: Vec<With>,
     /// Size of INPUT's pictures, px [default: 768x768; 384x384 without triangles]
     #[arg(long, value_name = "WxH", value_parser = size, requires = "inputs", allow_hyphen_values = true)]
     pub size: Option<[u32; 2]>,

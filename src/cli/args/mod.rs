@@ -13,6 +13,8 @@ mod tests;
 mod truth;
 #[cfg(feature = "viewer")]
 mod view;
+#[cfg(feature = "bench")]
+mod with;
 
 #[cfg(feature = "bench")]
 pub use bench::Bench;
@@ -25,6 +27,8 @@ pub use render_settings::RenderSettings;
 pub use truth::Truth;
 #[cfg(feature = "viewer")]
 pub use view::View;
+#[cfg(feature = "bench")]
+pub use with::With;
 
 use super::values::{Layer, choice, direction, kernel, method, number, size, vector, whole};
 use clap::{Args, Parser, Subcommand};

@@ -9,7 +9,7 @@ use surfel::settings::{Alpha, Choice, Cull, Edges, Hierarchy, Shading, Widen};
 use surfel::{Error, Result, Settings};
 
 /// Render settings.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct RenderSettings {
     /// What the picture shows [default: lit; edl for coloured points if many are on no surface, or many estimated normals mean nothing]
     #[arg(long, value_parser = choice::<Shading>(), default_value_if("edl", ArgPredicate::IsPresent, Shading::Edl.name()))]
