@@ -157,7 +157,7 @@ fn frame(
     [frame.key_near, frame.key_far] = key.of_planes(projection, depths).map(|key| key as f32);
     let distance = bounds.map_or(projection.near, |bounds| rays.distance(bounds.centre()));
     frame.key_gain = key.gain(projection, depths, distance) as f32;
-    frame.key_reach = key.reach(rays, projection) as f32;
+    frame.key_reach = key.reach(settings, rays, projection) as f32;
     let [hi, lo] = split(DVec4::splat(key.offset));
     frame.key_offset = [hi[0], lo[0]];
     frame.key_at_zero = key.at_zero(depths) as f32;
@@ -381,8 +381,8 @@ impl DepthKey {
     }
 
     /// How much nearer than its disc a fragment's depth may be, as the shaders' `key_reach`.
-    fn reach(&self, rays: &CameraRays, projection: &Projection) -> f64 {
-        let reach = Settings::MOST_RISE * rays.pixel_width();
+    fn reach(&self, settings: &Settings, rays: &CameraRays, projection: &Projection) -> f64 {
+        let reach = settings.most_rise() * rays.pixel_width();
         match projection.perspective {
             true if self.offset > 0.0 => reach,
             true => 1.0 + reach,

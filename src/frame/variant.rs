@@ -237,10 +237,10 @@ impl Variant {
     }
 
     /// The variant in frames of so many surfels in a picture of so many pixels: [`Variant::occlusion_culling`] costs as much as it saves where
-    /// surfels are fewer than pixels.
+    /// surfels are fewer than pixels. Where sums are not divided, planes may reach far in front of clusters: see [`Settings::most_rise`].
     pub fn with_occlusion_culling(self, surfels: u64, pixels: u64) -> Self {
-        let can =
-            self.clusters && self.opens_tiles() && !self.distant && self.footprint.is_in_tangent_plane();
+        let is_bounded = self.footprint.is_in_tangent_plane() && self.normalization == Normalization::Pixel;
+        let can = self.clusters && self.opens_tiles() && !self.distant && is_bounded;
         Self { occlusion_culling: can && surfels > pixels, ..self }
     }
 

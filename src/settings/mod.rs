@@ -10,7 +10,7 @@ pub mod pull_push;
 pub mod splatting;
 
 use crate::settings::pull_push::{PullPush, Rules};
-use crate::settings::splatting::{Filter, Footprint, Splatting, Visibility};
+use crate::settings::splatting::{Filter, Footprint, Normalization, Splatting, Visibility};
 pub use choice::Choice;
 pub use hierarchy::Hierarchy;
 pub use lighting::{DirectionalLight, Lighting};
@@ -104,9 +104,11 @@ impl Settings {
     /// Largest low-pass variance, px²: the filter widens a splat to at most 10 px per σ.
     pub const MOST_LOWPASS: f32 = 100.0;
 
-    /// How far in front of its disc a splat's plane shows at most, in the widths of a pixel there: the low-pass extends the plane of a disc
-    /// seen edge-on far in front of it.
+    /// [`Settings::most_rise`] where sums are divided by those of weights: the low-pass extends the plane of a disc seen edge-on far in front
+    /// of it.
     pub(crate) const MOST_RISE: f64 = 8.0;
+    /// The same where they are not divided: kernels stay whole, as on a plane towards its horizon the sum of their weights counts.
+    const MOST_RISE_UNDIVIDED: f64 = 1e9;
 
     /// Variance of the filter of pixels where none is given, px².
     pub const DEFAULT_PIXEL_FILTER: f32 = 0.75;
@@ -134,6 +136,13 @@ impl Settings {
     /// Whether every point is a circle of a fixed size.
     pub fn draws_points(&self) -> bool {
         self.pull_push.is_none() && self.splatting.footprint == Footprint::Point
+    }
+
+    /// How far in front of its disc a splat's plane shows at most, in the widths of a pixel there.
+    pub(crate) fn most_rise(&self) -> f64 {
+        let Splatting { normalization, visibility, .. } = self.splatting;
+        let divided = normalization == Normalization::Pixel || visibility == Visibility::Nearest;
+        if divided { Self::MOST_RISE } else { Self::MOST_RISE_UNDIVIDED }
     }
 
     /// Radius of the filter of pixels, px: 3 σ, rounded up; 0 if the picture is not filtered.

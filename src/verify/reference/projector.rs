@@ -120,9 +120,9 @@ impl Projector {
         rays.y_axis.length().max(rays.z_axis.length())
     }
 
-    /// The depth of a fragment of `splat` where its plane is at `depth`: see [`Settings::MOST_RISE`].
+    /// The depth of a fragment of `splat` where its plane is at `depth`: see [`Settings::most_rise`].
     pub(super) fn shown(&self, splat: &Splat, depth: f64) -> f64 {
-        let rise = Settings::MOST_RISE * self.pixel_width();
+        let rise = self.settings.most_rise() * self.pixel_width();
         depth.max(if self.depth.perspective { splat.nearest / (1.0 + rise) } else { splat.nearest - rise })
     }
 
