@@ -104,9 +104,9 @@ pub fn positive<T: FromStr + Into<f64> + Copy>(text: &str) -> Result<T, String> 
     usable.ok_or_else(|| "give a number above 0".into())
 }
 
-/// Parses the angle of a sharp edge, degrees.
-pub fn edge(text: &str) -> Result<f32, String> {
-    let angle = text.trim().parse().ok().filter(|angle: &f32| *angle > 0.0 && *angle < 180.0);
+/// Parses an angle between 0 and 180 degrees.
+pub fn angle<T: FromStr + Into<f64> + Copy>(text: &str) -> Result<T, String> {
+    let angle = text.trim().parse().ok().filter(|&angle: &T| angle.into() > 0.0 && angle.into() < 180.0);
     angle.ok_or_else(|| "give an angle above 0 and below 180".into())
 }
 

@@ -24,7 +24,10 @@ fn parallel_projection_shows_distant_points_as_large_as_near_ones() {
     program.run(&format!("{common} --eye 0,0,5 --target 0,0,0 --fov 43.6028")).text();
     assert!(!seen(&program, [10, 18, 20, 30])[0]);
     let run = program.run(&format!("{common} --eye 0,0,5 --target 0,0,0 --parallel -1"));
-    assert!(run.error(2).contains("height of the picture is -1"), "{}", run.err);
+    assert!(run.error(2).contains("'-1' for '--parallel <HEIGHT>': give a number above 0"), "{}", run.err);
+    // Before the file is read.
+    let run = program.run("render none.ply -o out.png --fov 180");
+    assert!(run.error(2).contains("give an angle above 0 and below 180"), "{}", run.err);
 }
 
 #[test]

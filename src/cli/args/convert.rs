@@ -1,7 +1,7 @@
 //! Options of `surfel convert` and `surfel info`.
 
 use super::{Colours, DeviceArgs, Points, inputs};
-use crate::cli::values::{direction, edge, positive, whole};
+use crate::cli::values::{angle, direction, positive, whole};
 use clap::Args;
 use glam::DVec3;
 use std::ffi::OsString;
@@ -33,7 +33,7 @@ pub struct Convert {
     #[arg(long, value_name = "TOLERANCE", value_parser = positive::<f64>, allow_hyphen_values = true)]
     pub simplify_lines: Option<f64>,
     /// Clips discs at creases where normals differ by more than ANGLE degrees
-    #[arg(long, value_name = "ANGLE", value_parser = edge, allow_hyphen_values = true)]
+    #[arg(long, value_name = "ANGLE", value_parser = angle::<f32>, allow_hyphen_values = true)]
     pub sharp: Option<f32>,
     /// Captures normalization weights from VIEWS directions, for --normalization surfel [default: 24]
     #[arg(long, value_name = "VIEWS", num_args = 0..=1, require_equals = true, default_missing_value = "24", value_parser = whole::<u32>(1..=10_000))]

@@ -30,7 +30,7 @@ pub use view::View;
 #[cfg(feature = "bench")]
 pub use with::With;
 
-use super::values::{Layer, choice, direction, kernel, method, number, size, vector, whole};
+use super::values::{Layer, angle, choice, direction, kernel, method, positive, size, vector, whole};
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use glam::DVec3;
@@ -262,10 +262,10 @@ pub struct Camera {
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
     pub up: Option<DVec3>,
     /// Vertical angle of view, degrees [default: 45]
-    #[arg(long, value_name = "DEG", value_parser = number::<f64>, allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEG", value_parser = angle::<f64>, allow_hyphen_values = true)]
     pub fov: Option<f64>,
     /// Parallel projection: height of the picture, in the positions' unit
-    #[arg(long, value_name = "HEIGHT", value_parser = number::<f64>, conflicts_with = "fov", allow_hyphen_values = true)]
+    #[arg(long, value_name = "HEIGHT", value_parser = positive::<f64>, conflicts_with = "fov", allow_hyphen_values = true)]
     pub parallel: Option<f64>,
     /// Reads the camera from a JSON file
     ///
