@@ -202,7 +202,7 @@ fn hard(
     Ok((sweeps, missing))
 }
 
-/// Computes times relative to the CPU baseline for as many points and pixels with its own settings. Of several
+/// Computes times relative to the CPU baseline for as many points and the same picture with its own settings. Of several
 /// baselines, one of the same suite and experiment is preferred, as it ran at about the same time.
 fn compare_times(runs: &mut [Run]) {
     let shipped = |run: &&Run| {
@@ -220,8 +220,8 @@ fn compare_times(runs: &mut [Run]) {
     let baselines: Vec<Run> = baselines.filter(|run| run.ms().is_some()).cloned().collect();
     for run in runs {
         let alike = baselines.iter().filter(|other| {
-            let what = |run: &Run| (run.points, run.size, run.overlap);
-            run.scene == other.scene && what(run) == what(other)
+            let of = |run: &Run| (run.points, run.overlap);
+            run.view() == other.view() && of(run) == of(other)
         });
         let distance = |other: &Run| (run.suite != other.suite, run.experiment != other.experiment);
         let unit = alike.min_by_key(|other| distance(other)).and_then(|other| other.time.as_ref());

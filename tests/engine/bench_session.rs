@@ -40,6 +40,38 @@ fn a_session_ends_in_time_and_lists_what_is_missing() {
     assert!(took < Duration::from_secs(20), "{took:?}");
 }
 
+/// A session of an input in pictures of 16² px, without a device.
+fn of_input(scene: &str, points: Vec<u64>, earlier: Option<Session>) -> SessionOptions {
+    SessionOptions {
+        suites: vec![Suite::Inputs],
+        inputs: UserInputs {
+            subjects: vec![Rc::new(Subject::scene(scene).unwrap())],
+            points,
+            size: Some([16, 16]),
+            ..UserInputs::default()
+        },
+        device: None,
+        rasterizer: Default::default(),
+        validated: false,
+        cache: None,
+        limit: None,
+        earlier,
+        command: "surfel bench".into(),
+    }
+}
+
+#[test]
+fn times_are_relative_to_the_baseline_of_the_same_picture() {
+    let (session, _) = surfel::bench::measure(of_input("scene:torus", vec![50], None), &(), &mut |_| Ok(()));
+    let baselines: Vec<_> =
+        session.runs.iter().filter(|run| run.implementation.method == "baseline-splats").collect();
+    let shadings: Vec<_> = baselines.iter().map(|run| run.settings.shading.as_str()).collect();
+    assert_eq!(shadings, ["lit", "color"]);
+    for run in baselines {
+        assert_eq!(run.time.as_ref().unwrap().baseline_ratio, Some(1.0), "{}", run.settings.shading);
+    }
+}
+
 /// Cancels what observes it.
 struct Cancelled;
 
@@ -53,22 +85,7 @@ impl surfel::Progress for Cancelled {
 
 #[test]
 fn an_interrupted_session_goes_on_with_what_is_missing() {
-    let options = |earlier| SessionOptions {
-        suites: vec![Suite::Inputs],
-        inputs: UserInputs {
-            subjects: vec![Rc::new(Subject::scene("scene:sphere").unwrap())],
-            points: vec![50, 60, 70, 80],
-            size: Some([16, 16]),
-            ..UserInputs::default()
-        },
-        device: None,
-        rasterizer: Default::default(),
-        validated: false,
-        cache: None,
-        limit: None,
-        earlier,
-        command: "surfel bench".into(),
-    };
+    let options = |earlier| of_input("scene:sphere", vec![50, 60, 70, 80], earlier);
     // Without a device methods are refused, which counts as measured; the baselines are not.
     let mut kept = Vec::new();
     let mut end_at_second = |session: &Session| {

@@ -220,8 +220,9 @@ pub struct Time {
     pub device: Option<Statistics>,
     /// Logical processors that other programs kept busy meanwhile, on average; none if it is unknown.
     pub others: Option<f64>,
-    /// Median time divided by that of the CPU baseline, for the same scene, points and size with default settings, measured in the same
-    /// session: of processor time on devices that are processors, otherwise of wall time, which both have in common.
+    /// Median time divided by that of the CPU baseline, for the same points and picture (scene, size, shading and viewpoint) with its own
+    /// settings, measured in the same session: of processor time on devices that are processors, otherwise of wall time, which both have in
+    /// common.
     pub baseline_ratio: Option<f64>,
 }
 

@@ -47,7 +47,7 @@ fn terms() -> Markup {
         ),
         (
             "× baseline",
-            "median time relative to the CPU baseline, a plain native renderer, for the same scene, points and size with default settings, in the same session: of processor time, or of wall time on a GPU",
+            "median time relative to the CPU baseline, a plain native renderer, for the same points and picture (scene, size, shading and viewpoint) with its own settings, in the same session: of processor time, or of wall time on a GPU",
         ),
     ];
     html! { dl { @for (term, meaning) in terms { dt { (term) } dd { (meaning) } } } }
