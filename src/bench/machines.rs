@@ -3,6 +3,7 @@
 use super::format;
 use super::record::{Results, Run, Session, Time};
 use crate::frame::times::{Interval, Statistics};
+use glam::DVec3;
 
 /// A machine, with its sessions by one version of the program.
 pub struct Machine<'a> {
@@ -51,11 +52,23 @@ fn is_same(a: &Session, b: &Session) -> bool {
     key(a) == key(b)
 }
 
-/// What makes runs comparable: the suite may differ.
+/// What makes runs comparable, beside their viewpoints: the suite may differ.
 fn key(run: &Run) -> impl PartialEq + use<> {
     let overlap = run.overlap.map(|overlap| format::significant(overlap, 3));
     let what = (run.experiment, run.paper_item.clone(), run.scene.clone(), run.points, run.size, overlap);
     (what, run.implementation.clone(), run.settings.clone())
+}
+
+/// Lengths relative to the distance of the point looked at, below which viewpoints are the same: machines round angles differently.
+const SAME: f64 = 1e-6;
+
+/// Whether both are seen from the same viewpoint.
+fn is_same_view(a: &Run, b: &Run) -> bool {
+    let (Some(a), Some(b)) = (&a.viewpoint, &b.viewpoint) else { return a.viewpoint == b.viewpoint };
+    let distance = |a: [f64; 3], b: [f64; 3]| DVec3::from(a).distance(DVec3::from(b));
+    let near = SAME * distance(a.eye, a.target);
+    let is_near = distance(a.eye, b.eye) <= near && distance(a.target, b.target) <= near;
+    is_near && distance(a.up, b.up) <= SAME && (&a.place, a.fov_y_deg) == (&b.place, b.fov_y_deg)
 }
 
 /// The timed runs that at least two of the machines have, in the order of the first machine with each.
@@ -64,7 +77,7 @@ pub fn rows<'a>(machines: &[Machine<'a>]) -> Vec<Row<'a>> {
     for (place, machine) in machines.iter().enumerate() {
         for (run, time) in machine.timed() {
             let key = key(run);
-            let known = rows.iter().position(|(other, _)| *other == key);
+            let known = rows.iter().position(|(other, row)| *other == key && is_same_view(row.run, run));
             let known = known.unwrap_or_else(|| {
                 rows.push((key, Row { run, times: vec![None; machines.len()] }));
                 rows.len() - 1

@@ -121,6 +121,25 @@ fn machines_have_the_ratio_of_their_times() {
 }
 
 #[test]
+fn machines_are_compared_from_the_same_viewpoint() {
+    let from = |place: &str, ms| Run {
+        viewpoint: Some(Viewpoint { place: place.into(), ..viewpoint() }),
+        ..run(Experiment::Views, "scene:a", 1000, ms, 0.1)
+    };
+    let mut results = plausible();
+    results.sessions.push(session());
+    results.sessions[1].provenance.device.as_mut().unwrap().name = "NVIDIA H100".into();
+    results.sessions[0].runs = vec![from("own", 10.0), from("behind", 20.0)];
+    results.sessions[1].runs = vec![from("behind", 5.0)];
+    let rows = machines::rows(&Machine::all(&results));
+    let speeds: Vec<_> = rows.iter().map(|row| row.speed(1).unwrap().median).collect();
+    assert_eq!(speeds, [4.0]);
+    let page = page(&results, CODE);
+    let section = page.split("<section id=\"machines\">").nth(1).unwrap();
+    assert!(section.contains("behind"), "{section}");
+}
+
+#[test]
 fn runs_that_time_did_not_suffice_for_are_listed() {
     let mut results = plausible();
     let missing = |experiment: &str, points, count| Missing {

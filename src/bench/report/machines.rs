@@ -1,6 +1,6 @@
 //! Machines side by side: how many times as fast each is as the first.
 
-use super::page::titled;
+use super::page::title;
 use crate::bench::format;
 use crate::bench::group::{distinct, grouped};
 use crate::bench::machines::{Machine, Row, mean, rows};
@@ -123,15 +123,15 @@ fn all(machines: &[Machine<'_>], rows: &[Row<'_>]) -> Markup {
 
 fn table(machines: &[Machine<'_>], rows: &[&Row<'_>]) -> Markup {
     let runs: Vec<&Run> = rows.iter().map(|row| row.run).collect();
-    let groups = grouped(runs, |run| (&run.paper_item, &run.scene, run.size));
+    let groups = grouped(runs, |run| (&run.paper_item, run.view()));
     html! { table.passes {
         thead { tr {
             th.number scope="col" { "points" } th.number scope="col" { "overlap" } th scope="col" { "implementation" } th scope="col" { "options" }
             @for number in 0..machines.len() { th.number scope="col" { (letter(number)) ", ms" } }
             @for number in 1..machines.len() { th.number scope="col" { (letter(number)) " / A" } }
         } }
-        @for ((item, scene, size), runs) in &groups { tbody {
-            tr.group { th colspan=(3 + 2 * machines.len()) scope="rowgroup" { (item) @if !item.is_empty() { ": " } (titled(scene, *size)) } }
+        @for ((item, view), runs) in &groups { tbody {
+            tr.group { th colspan=(3 + 2 * machines.len()) scope="rowgroup" { (item) @if !item.is_empty() { ": " } (title(view)) } }
             @for row in rows.iter().filter(|row| runs.iter().any(|run| std::ptr::eq(*run, row.run))) { tr {
                 td.number { (format::count(row.run.points)) }
                 td.number { (row.run.overlap.map(|overlap| format::significant(overlap, 2)).unwrap_or_default()) }
