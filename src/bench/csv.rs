@@ -3,7 +3,9 @@
 
 use super::format;
 use super::group::distinct;
-use super::record::{Ceilings, Float64Error, Memory, PassWork, Rate, Results, Run, Session, SweepPoint};
+use super::record::{
+    Ceilings, Clock, Float64Error, Memory, PassWork, Rate, Results, Run, Session, SweepPoint,
+};
 use crate::error::{Error, Result};
 use crate::frame::times::Statistics;
 use crate::settings::Choice;
@@ -160,9 +162,10 @@ fn time(session: &Session, run: &Run) -> Vec<Cell> {
         ("others", number(time.and_then(|time| time.others))),
     ])
     .collect();
-    row.extend(spread("wall", time.map(|time| time.wall)));
-    row.extend(spread("cpu", time.map(|time| time.cpu)));
-    row.extend(spread("device_time", time.and_then(|time| time.device)));
+    row.extend(spread("wall", time.map(|time| time.by(Clock::Wall))));
+    row.extend(spread("cpu", time.map(|time| time.by(Clock::Cpu))));
+    let by_timestamps = time.filter(|time| time.device.is_some());
+    row.extend(spread("device_time", by_timestamps.map(|time| time.by(Clock::Gpu))));
     row.push(("baseline_ratio".into(), number(time.and_then(|time| time.baseline_ratio))));
     row.extend(spread("ratio", run.ratio));
     row

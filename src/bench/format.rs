@@ -3,7 +3,7 @@
 use super::disturbance::{self, Disturbance};
 use super::group::distinct;
 use super::record::{
-    Ceilings, Clock, Implementation, Memory, Provenance, Rate, Run, RunSettings, Session, Sweep,
+    Ceilings, Clock, Implementation, Memory, Provenance, Rate, Run, RunSettings, Session, Sweep, Time,
 };
 use crate::frame::times::Statistics;
 use crate::settings::methods::Method;
@@ -73,6 +73,21 @@ pub fn ms(value: f64) -> String {
 pub fn spread(of: &Statistics) -> String {
     let interval = of.interval.map(|[low, high]| format!(" ({}–{})", ms(low), ms(high)));
     ms(of.median) + &interval.unwrap_or_default()
+}
+
+/// The 95 % interval of a median, or the number of frames where these are too few for one.
+pub fn ends_or_frames(of: &Statistics, frames: usize) -> String {
+    match of.interval {
+        Some([low, high]) => format!("{}–{}", ms(low), ms(high)),
+        None if frames == 1 => "1 frame".into(),
+        None => format!("{frames} frames"),
+    }
+}
+
+/// The work of a frame: its median with [`ends_or_frames`].
+pub fn work(time: &Time) -> String {
+    let work = time.work();
+    format!("{} ({})", ms(work.median), ends_or_frames(&work, time.frames))
 }
 
 /// A number with a prefix of ten to the power of three: `8.1 G`.

@@ -1,7 +1,7 @@
 //! Times of the same runs on several machines.
 
 use super::format;
-use super::record::{Results, Run, Session, Time};
+use super::record::{Clock, Results, Run, Session, Time};
 use crate::frame::times::{Interval, Statistics};
 use glam::DVec3;
 
@@ -17,6 +17,15 @@ pub struct Row<'a> {
     pub run: &'a Run,
     /// Its times, machine by machine.
     pub times: Vec<Option<&'a Time>>,
+}
+
+/// How many times as fast a machine is as another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Speed {
+    /// Quotient of the medians.
+    pub median: f64,
+    /// Contains this quotient wherever both medians are within their own 95 % intervals. None unless both have one.
+    pub interval: Option<[f64; 2]>,
 }
 
 impl<'a> Machine<'a> {
@@ -97,26 +106,27 @@ impl Row<'_> {
         let first = clocks.next();
         let is_common = clocks.all(|clock| Some(clock) == first);
         let time = self.times.get(machine).copied().flatten()?;
-        Some(if is_common { time.work() } else { time.wall })
+        Some(time.by(if is_common { time.clock } else { Clock::Wall }))
     }
 
-    /// How many times as fast a machine is as the first, with an interval that contains the quotient of the medians wherever both are within their
-    /// own 95 % intervals. None if one was not timed.
-    pub fn speed(&self, machine: usize) -> Option<Interval> {
+    /// How many times as fast a machine is as the first. None if one was not timed.
+    pub fn speed(&self, machine: usize) -> Option<Speed> {
         quotient(&self.time(0)?, &self.time(machine)?)
     }
 }
 
-fn quotient(a: &Statistics, b: &Statistics) -> Option<Interval> {
-    let ends = |of: &Statistics| of.interval.unwrap_or([of.min, of.max]);
-    let ([low, high], [other_low, other_high]) = (ends(a), ends(b));
-    let quotient = Interval { median: a.median / b.median, low: low / other_high, high: high / other_low };
-    let is_usable = |value: f64| value.is_finite() && value > 0.0;
-    [quotient.median, quotient.low, quotient.high].into_iter().all(is_usable).then_some(quotient)
+fn quotient(a: &Statistics, b: &Statistics) -> Option<Speed> {
+    let is_usable = |value: &f64| value.is_finite() && *value > 0.0;
+    let quotient = |a: f64, b: f64| Some(a / b).filter(is_usable);
+    let ends = a.interval.zip(b.interval);
+    let interval = ends.and_then(|([low, high], [other_low, other_high])| {
+        Some([quotient(low, other_high)?, quotient(high, other_low)?])
+    });
+    Some(Speed { median: quotient(a.median, b.median)?, interval })
 }
 
 /// Geometric mean, least and greatest of some speeds; none without any.
-pub fn mean(speeds: impl Iterator<Item = Interval>) -> Option<(usize, Interval)> {
+pub fn mean(speeds: impl Iterator<Item = Speed>) -> Option<(usize, Interval)> {
     let medians: Vec<f64> = speeds.map(|speed| speed.median).collect();
     let mean = (medians.iter().map(|value| value.ln()).sum::<f64>() / medians.len() as f64).exp();
     let low = medians.iter().copied().reduce(f64::min)?;

@@ -160,7 +160,7 @@ fn cells(session: &Session, run: &Run, runs: &[&Run]) -> Vec<String> {
             .unwrap_or_default(),
     ];
     let rest = [
-        run.time.as_ref().map(|time| format::spread(&time.work())).unwrap_or_default(),
+        run.time.as_ref().map(format::work).unwrap_or_default(),
         run.time.as_ref().map(|time| format::ms(time.wall.median)).unwrap_or_default(),
         multiple.unwrap_or_default(),
         metric("rmse", 3),

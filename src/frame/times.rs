@@ -25,10 +25,13 @@ pub struct Statistics {
     pub min: f64,
     /// Greatest.
     pub max: f64,
-    /// The 95 % confidence interval of the median: see [`Interval`]. `None` in results of programs that did not have it.
+    /// The 95 % confidence interval of the median, by the sign test: see [`Interval`]. `None` of fewer than [six](FEWEST) values.
     #[cfg_attr(feature = "serde", serde(default))]
     pub interval: Option<[f64; 2]>,
 }
+
+/// Fewest values that give a 95 % interval: the median is outside of those of fewer with a probability above 5 %.
+pub const FEWEST: usize = 6;
 
 /// Median with its 95 % confidence interval.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -47,8 +50,9 @@ impl Interval {
     /// Interval between two of the values, by the sign test: whatever their distribution, the median is outside with a probability of at most
     /// 5 %. Fewer than six values do not suffice: it is then from the least to the greatest. `None` without values.
     pub fn of(values: &[f64]) -> Option<Self> {
-        let Statistics { median, interval, .. } = Statistics::of(values)?;
-        interval.map(|[low, high]| Self { median, low, high })
+        let Statistics { median, min, max, interval } = Statistics::of(values)?;
+        let [low, high] = interval.unwrap_or([min, max]);
+        Some(Self { median, low, high })
     }
 }
 
@@ -110,8 +114,11 @@ impl Statistics {
         sorted.sort_by(f64::total_cmp);
         let (min, max) = (*sorted.first()?, *sorted.last()?);
         let median = 0.5 * (sorted[(sorted.len() - 1) / 2] + sorted[sorted.len() / 2]);
-        let out = values_outside(sorted.len());
-        Some(Self { median, min, max, interval: Some([sorted[out], sorted[sorted.len() - 1 - out]]) })
+        let interval = (sorted.len() >= FEWEST).then(|| {
+            let out = values_outside(sorted.len());
+            [sorted[out], sorted[sorted.len() - 1 - out]]
+        });
+        Some(Self { median, min, max, interval })
     }
 }
 
@@ -142,15 +149,9 @@ mod tests {
     #[test]
     fn the_first_of_several_frames_does_not_count() {
         let three = times(&[100, 4, 2, 9]);
-        assert_eq!(
-            three.frame(),
-            Some(Statistics { median: 4.0, min: 2.0, max: 9.0, interval: Some([2.0, 9.0]) })
-        );
+        assert_eq!(three.frame(), Some(Statistics { median: 4.0, min: 2.0, max: 9.0, interval: None }));
         let passes: Vec<_> = three.passes().collect();
-        assert_eq!(
-            passes,
-            [("footprint", Statistics { median: 2.0, min: 1.0, max: 4.5, interval: Some([1.0, 4.5]) })]
-        );
+        assert_eq!(passes, [("footprint", Statistics { median: 2.0, min: 1.0, max: 4.5, interval: None })]);
         assert_eq!(times(&[7]).frame().map(|frame| frame.max), Some(7.0));
         assert_eq!(times(&[100, 1, 2]).frame().map(|frame| frame.median), Some(1.5));
         assert_eq!(times(&[]).frame(), None);
@@ -170,6 +171,12 @@ mod tests {
         }
         let many = of(5000).unwrap();
         assert!(many.low > 2400.0 && many.low < 2500.0, "{many:?}");
+    }
+
+    #[test]
+    fn fewer_than_six_values_have_no_interval() {
+        let of = |count: usize| Statistics::of(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0][..count]).unwrap().interval;
+        assert_eq!([1, 3, 5, 6].map(of), [None, None, None, Some([1.0, 6.0])]);
     }
 
     #[test]

@@ -94,10 +94,9 @@ fn machines_have_the_ratio_of_their_times() {
     assert!(rows.iter().all(|row| row.run.experiment != Experiment::Aliasing));
     for row in &rows {
         let speed = row.speed(1).unwrap();
+        let [low, high] = speed.interval.unwrap();
         // Ends of both intervals are at 0.98 and 1.03 of the median.
-        for (value, expected) in
-            [(speed.median, 4.0), (speed.low, 4.0 * 0.98 / 1.03), (speed.high, 4.0 * 1.03 / 0.98)]
-        {
+        for (value, expected) in [(speed.median, 4.0), (low, 4.0 * 0.98 / 1.03), (high, 4.0 * 1.03 / 0.98)] {
             assert!((value - expected).abs() < 1e-9, "{speed:?}");
         }
     }
@@ -109,6 +108,20 @@ fn machines_have_the_ratio_of_their_times() {
     for words in ["llvmpipe Mesa 22.3.6", "NVIDIA H100", "4×", " 3.8–4.2"] {
         assert!(section.contains(words), "{words}\n{section}");
     }
+    // Fewer than six frames have no interval.
+    let mut few = results.clone();
+    few.sessions[1..]
+        .iter_mut()
+        .flat_map(|session| &mut session.runs)
+        .flat_map(|run| &mut run.time)
+        .for_each(|time| time.frames = 5);
+    let machines = Machine::all(&few);
+    assert!(
+        machines::rows(&machines)
+            .iter()
+            .all(|row| row.speed(1).is_some_and(|speed| speed.interval.is_none()))
+    );
+    assert!(self::page(&few, CODE).contains(" 5 frames"));
     // Times by different clocks are compared by what both have: wall time.
     let mut by_gpu = results.clone();
     for time in

@@ -65,6 +65,23 @@ fn the_table_is_narrow_and_has_reasons_of_refusals() {
 }
 
 #[test]
+fn times_of_few_frames_have_no_interval() {
+    let of = |frames| {
+        // As programs wrote it that gave every time an interval.
+        let mut results = plausible();
+        results.sessions[0].runs = vec![run(Experiment::Budget, "scene:a", 1000, 10.0, 0.05)];
+        results.sessions[0].runs[0].time.as_mut().unwrap().frames = frames;
+        (table(&results, CODE, NOW), page(&results, CODE))
+    };
+    let (text, few) = of(3);
+    assert!(text.contains(" 10 (3 frames) ") && !text.contains("9.8"), "{text}");
+    assert!(few.contains("runs are of fewer than six frames"));
+    let (text, enough) = of(6);
+    assert!(text.contains(" 10 (9.8–10.3) ") && !text.contains("frames)"), "{text}");
+    assert!(!enough.contains("runs are of fewer than six frames"));
+}
+
+#[test]
 fn published_numbers_are_shown_beside_measured_ones() {
     let results = plausible();
     let page = page(&results, CODE);

@@ -68,11 +68,7 @@ impl LoadedEngine for TracedEngine {
     fn picture(&mut self, camera: &Camera, settings: &Settings) -> Result<Picture> {
         let (begin, spent) = (Instant::now(), ProcessTime::now());
         let picture = self.render(camera, settings)?;
-        // One frame has no interval.
-        let once = |seconds: f64| Statistics {
-            interval: None,
-            ..Statistics::of(&[1e3 * seconds]).unwrap_or_default()
-        };
+        let once = |seconds: f64| Statistics::of(&[1e3 * seconds]).unwrap_or_default();
         self.time = Some(Time {
             clock: Clock::Cpu,
             frames: 1,

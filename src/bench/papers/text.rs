@@ -129,8 +129,8 @@ pub(in crate::bench) fn ratio(run: &Run) -> String {
     match (&run.refused, run.ratio) {
         (Some(why), _) => format!("refused: {why}"),
         (_, Some(ratio)) => {
-            let [low, high] = ratio.interval.unwrap_or([ratio.min, ratio.max]);
-            format!("{} ({}–{})", number(ratio.median), number(low), number(high))
+            let ends = ratio.interval.map(|[low, high]| format!(" ({}–{})", number(low), number(high)));
+            number(ratio.median) + &ends.unwrap_or_default()
         }
         _ => String::new(),
     }

@@ -1,7 +1,7 @@
 //! Results of a run: what was rendered, its times, errors and memory.
 
 use super::{Experiment, PassWork};
-use crate::frame::times::Statistics;
+use crate::frame::times::{FEWEST, Statistics};
 use crate::settings::methods::Method;
 use crate::settings::splatting::Splatting;
 use crate::settings::{Alpha, Choice, Edges, Settings};
@@ -390,11 +390,23 @@ impl Run {
 impl Time {
     /// The work of a frame, ms, by its [clock](Clock).
     pub fn work(&self) -> Statistics {
-        match (self.clock, self.device) {
+        self.by(self.clock)
+    }
+
+    /// The time of a frame by a clock, ms; wall time if there is none by that. Results of older programs have intervals of fewer than six
+    /// frames, which are left out.
+    pub fn by(&self, clock: Clock) -> Statistics {
+        let time = match (clock, self.device) {
             (Clock::Gpu, Some(device)) => device,
             (Clock::Cpu, _) => self.cpu,
             _ => self.wall,
-        }
+        };
+        Statistics { interval: time.interval.filter(|_| self.has_interval()), ..time }
+    }
+
+    /// Whether its frames suffice for the 95 % interval of their median.
+    pub fn has_interval(&self) -> bool {
+        self.frames >= FEWEST
     }
 }
 

@@ -3,8 +3,8 @@
 use super::page::title;
 use crate::bench::format;
 use crate::bench::group::{distinct, grouped};
-use crate::bench::machines::{Machine, Row, mean, rows};
-use crate::bench::record::{Ceilings, Rate, Results, Run};
+use crate::bench::machines::{Machine, Row, Speed, mean, rows};
+use crate::bench::record::{Ceilings, Rate, Results, Run, Time};
 use crate::frame::times::{Interval, Statistics};
 use crate::settings::Choice;
 use maud::{Markup, html};
@@ -94,7 +94,9 @@ fn means(machines: &[Machine<'_>], rows: &[Row<'_>]) -> Markup {
                 @for number in 1..machines.len() {
                     @let own = rows.iter().filter(|row| row.run.implementation.method == **method);
                     @match mean(own.filter_map(|row| row.speed(number))) {
-                        Some((count, speed)) => { td.number { (interval(&speed)) } td.number { (count) } }
+                        Some((count, Interval { median, low, high })) => {
+                            td.number { (speed(median, Some([low, high]))) } td.number { (count) }
+                        }
                         None => { td.number { "–" } td.number { "0" } }
                     }
                 }
@@ -109,7 +111,7 @@ fn all(machines: &[Machine<'_>], rows: &[Row<'_>]) -> Markup {
     html! {
         p {
             "Each run: time of a frame in ms with its 95 % interval, and how many times as fast as A, from the least to the greatest quotient of "
-            "both intervals."
+            "both intervals. Fewer than six frames give no interval: their number stands in its place."
         }
         @for (suite, experiment) in &experiments {
             @let own: Vec<&Row> = rows.iter().filter(|row| (&row.run.suite, row.run.experiment) == (*suite, *experiment)).collect();
@@ -137,21 +139,24 @@ fn table(machines: &[Machine<'_>], rows: &[&Row<'_>]) -> Markup {
                 td.number { (row.run.overlap.map(|overlap| format::significant(overlap, 2)).unwrap_or_default()) }
                 td { (row.run.implementation.label()) } td { (format::options_among(row.run, runs)) }
                 @for number in 0..machines.len() {
-                    td.number { @if let Some(time) = row.time(number) { (spread(&time)) } @else { "–" } }
+                    td.number { @if let Some((time, of)) = row.time(number).zip(row.times[number]) { (spread(&time, of)) } @else { "–" } }
                 }
                 @for number in 1..machines.len() {
-                    td.number { @if let Some(speed) = row.speed(number) { (interval(&speed)) } @else { "–" } }
+                    td.number { @if let Some(Speed { median, interval }) = row.speed(number) { (speed(median, interval)) } @else { "–" } }
                 }
             } }
         } }
     } }
 }
 
-fn spread(time: &Statistics) -> Markup {
-    let [low, high] = time.interval.unwrap_or([time.min, time.max]);
-    html! { (format::ms(time.median)) small { " " (format::ms(low)) "–" (format::ms(high)) } }
+/// Median of a frame's time, with its 95 % interval, or the number of frames where these are too few for one.
+fn spread(time: &Statistics, of: &Time) -> Markup {
+    html! { (format::ms(time.median)) small { " " (format::ends_or_frames(time, of.frames)) } }
 }
 
-fn interval(speed: &Interval) -> Markup {
-    html! { (format::baseline_ratio(speed.median)) small { " " (format::significant(speed.low, 2)) "–" (format::significant(speed.high, 2)) } }
+fn speed(median: f64, ends: Option<[f64; 2]>) -> Markup {
+    html! {
+        (format::baseline_ratio(median))
+        @if let Some([low, high]) = ends { small { " " (format::significant(low, 2)) "–" (format::significant(high, 2)) } }
+    }
 }

@@ -120,13 +120,13 @@ fn passes(session: &Session) -> Markup {
     html! { @if !timed.is_empty() {
         details {
             summary { "Times of the passes: " (timed.len()) " runs" }
-            p { "Median and range by the device's timestamps, ms, with the caller's wall time and the processor time of all threads; and why some times may not be those of the work." }
+            p { "Median and range over the frames by the device's timestamps, ms, with the caller's wall time and the processor time of all threads; and why some times may not be those of the work." }
             div.scroll { table.passes {
                 thead { tr {
                     th scope="col" { "experiment" } th scope="col" { "scene" } th.number scope="col" { "points" } th scope="col" { "size" }
                     th scope="col" { "implementation" } th scope="col" { "options" }
                     @for name in &names { th.number scope="col" { (name) } }
-                    th.number scope="col" { "device" } th.number scope="col" { "wall" } th.number scope="col" { "CPU" }
+                    th.number scope="col" { "frames" } th.number scope="col" { "device" } th.number scope="col" { "wall" } th.number scope="col" { "CPU" }
                     th scope="col" { "disturbed" }
                 } }
                 tbody { @for (run, time) in &timed { tr {
@@ -137,7 +137,7 @@ fn passes(session: &Session) -> Markup {
                         @let pass = time.passes.iter().find(|pass| pass.name == *name);
                         td.number { @if let Some(pass) = pass { (spread(pass.ms)) } }
                     }
-                    td.number { @if let Some(device) = time.device { (spread(device)) } }
+                    td.number { (time.frames) } td.number { @if let Some(device) = time.device { (spread(device)) } }
                     td.number { (spread(time.wall)) } td.number { (spread(time.cpu)) }
                     td { (format::disturbances(session, run)) }
                 } } }

@@ -5,7 +5,7 @@ use crate::bench::disturbance::disturbances;
 use crate::bench::format;
 use crate::bench::group::grouped;
 use crate::bench::recommendations::{Candidate, Column, Recommendations, within_error, within_time};
-use crate::bench::record::{RunSettings, Session};
+use crate::bench::record::{RunSettings, Session, TRACED};
 use crate::bench::standings::{Standing, standings};
 use crate::settings::methods::Method;
 use maud::{Markup, html};
@@ -25,7 +25,7 @@ pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
             @if multiples(session) { "× is the time relative to the CPU baseline, a plain native renderer. " }
             "Settings are listed where they differ from the method's defaults; those of the default method are "
             code { (format::selected_settings(&RunSettings::defaults(), NAMED)) } "."
-            (disturbed(session))
+            (disturbed(session)) (few_frames(session))
         }
         h3 { "Least error within a time budget" }
         (table(session, &format::time_heading(&session.runs), columns, times, time, |column, ms| {
@@ -46,7 +46,7 @@ fn unranked(session: &Session) -> Option<Markup> {
         p.lead {
             "No method is recommended: the surfaces of these points are unknown, so that errors of different methods cannot be compared. Give "
             "the mesh that the points were sampled from by " code { "--truth" } "."
-            (disturbed(session))
+            (disturbed(session)) (few_frames(session))
         }
     })
 }
@@ -168,6 +168,16 @@ fn disturbed(session: &Session) -> Markup {
         " " strong.disturbed { "The times of " (disturbed) " of " (timed) " runs were disturbed" }
         " and are marked: measure again on a quiet machine. Busy machine: logical processors that other programs used. Waited: the wall time of "
         "a frame, and the one that its work takes in like runs."
+    } }
+}
+
+/// How many of the session's times have no interval; ray tracing is timed once anyway.
+fn few_frames(session: &Session) -> Markup {
+    let timed = session.runs.iter().filter(|run| run.implementation.method != TRACED);
+    let timed: Vec<_> = timed.filter_map(|run| run.time.as_ref()).collect();
+    let few = timed.iter().filter(|time| !time.has_interval()).count();
+    html! { @if few > 0 {
+        " The times of " (few) " of " (timed.len()) " runs are of fewer than six frames, which give no 95 % interval."
     } }
 }
 

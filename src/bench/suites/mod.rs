@@ -80,7 +80,7 @@ impl Suite {
         }
     }
 
-    /// How many frames are timed. Fewer than six give no 95 % interval of the median.
+    /// How many frames are timed. [Fewer than six](crate::frame::times::FEWEST) give no 95 % interval of the median.
     pub fn effort(self) -> Effort {
         match self {
             Self::Quick => Effort { least: 6, budget: Duration::from_millis(150), ..Effort::default() },
