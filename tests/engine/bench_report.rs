@@ -118,7 +118,12 @@ fn the_page_has_the_errors_along_the_camera_path_by_the_options() {
     let (_, section) = page.split_once("<section id=\"aliasing\">").unwrap();
     let section = section.split_once("</section>").unwrap().0;
     assert_eq!(section.matches("<svg").count(), 2);
-    for part in ["--lowpass 0<", "flicker, linear light", "frame 3", "turns the picture by 0.37 px"] {
+    for part in [
+        "--lowpass 0 --pixel-filter none --alpha mask --edges nearest<",
+        "flicker, linear light",
+        "frame 3",
+        "turns the picture by 0.37 px",
+    ] {
         assert!(section.contains(part), "{part}: {section}");
     }
     // Without the values there is the table alone.
@@ -254,3 +259,21 @@ fn sessions_are_shown_separately() {
     let plots = |results: &Results| files(results, CODE).len() - 1;
     assert_eq!(plots(&results), 2 * plots(&plausible()));
 }
+
+#[test]
+fn the_low_pass_of_splats_is_compared_with_what_is_drawn_without_options() {
+    let mut results = plausible();
+    let section = |results: &Results| {
+        let page = page(results, CODE);
+        page.split("<section id=\"lowpass\">").nth(1).unwrap().split("</section>").next().unwrap().to_owned()
+    };
+    let whole = section(&results);
+    assert!(whole.contains("<code>--pixel-filter none --alpha mask --edges nearest</code>"), "{whole}");
+    assert!(
+        whole.contains("Without options, --lowpass 1 --pixel-filter gaussian:0.75 --cutoff 3.5"),
+        "{whole}"
+    );
+    results.sessions[0].runs.retain(|run| !run.is_default());
+    assert!(section(&results).contains("What is drawn without options was not measured."));
+}
+

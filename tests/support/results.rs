@@ -177,6 +177,12 @@ fn budget() -> Vec<Run> {
     runs
 }
 
+/// Settings of splats alone.
+fn splats_alone() -> RunSettings {
+    let [alpha, edges] = ["mask", "nearest"].map(str::to_owned);
+    RunSettings { pixel_filter: 0.0, alpha, edges, ..RunSettings::defaults() }
+}
+
 fn lowpass() -> Vec<Run> {
     let mut runs = Vec::new();
     for cutoff in [1.5, 2.0, 2.5, 3.0, 4.0f32] {
@@ -192,11 +198,15 @@ fn lowpass() -> Vec<Run> {
                     (80.0 + 60.0 * h * price) * f / 2.0,
                     error,
                 );
-                run.settings = RunSettings { cutoff, lowpass, widen: widen.into(), ..run.settings };
+                run.implementation = implementation("");
+                run.settings = RunSettings { cutoff, lowpass, widen: widen.into(), ..splats_alone() };
                 runs.push(run);
             }
         }
     }
+    // Without options.
+    let whole = run(Experiment::Lowpass, "scene:bumpy-sphere", 100_000, 120.0, 0.019);
+    runs.push(Run { implementation: implementation(""), ..whole });
     runs
 }
 
@@ -205,7 +215,7 @@ fn aliasing() -> Vec<Run> {
     cases
         .map(|(lowpass, rmse)| {
             let mut run = run(Experiment::Aliasing, "scene:plane?radius=1000", 1_000_000, 250.0, rmse);
-            run.settings.lowpass = lowpass;
+            run.settings = RunSettings { lowpass, ..splats_alone() };
             let error = run.error.as_mut().unwrap();
             error.metrics.insert("flicker".into(), 0.4 * rmse);
             error.path = Some(PathValues {

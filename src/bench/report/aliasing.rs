@@ -26,8 +26,9 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
     }
     Ok((!groups.is_empty()).then(|| html! {
         p {
-            "A texture far above the Nyquist frequency of the pixels. Without the low-pass filter each pixel shows single samples; with it, "
-            "their weighted mean."
+            "A texture far above the Nyquist frequency of the pixels. By splats alone, " code { "--pixel-filter none --alpha mask --edges nearest" }
+            ", each pixel shows single samples without the low-pass filter, and with it their weighted mean. What " code { "surfel render" }
+            " draws without options filters mostly pixels, after shading."
         }
         @for group in &groups { (group) }
     }))
@@ -101,9 +102,12 @@ fn table(runs: &[&Run]) -> Markup {
     }
 }
 
-/// The error without the filter relative to that with it, for runs that are equal otherwise.
+/// The error without the low-pass filter relative to that with it, for runs that are equal otherwise.
 fn sentences(runs: &[&Run]) -> Vec<String> {
-    let alike = |run: &Run| (run.implementation.label(), run.points, run.settings.cutoff.to_string());
+    let alike = |run: &Run| {
+        let other = [run.settings.cutoff, run.settings.pixel_filter].map(f32::to_bits);
+        (run.implementation.label(), run.points, other)
+    };
     let mut sentences = Vec::new();
     for ((implementation, points, _), group) in grouped(runs.iter().copied(), alike) {
         let by_width = |a: &&&Run, b: &&&Run| a.settings.lowpass.total_cmp(&b.settings.lowpass);

@@ -17,12 +17,15 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
     for ((scene, size, points, implementation), runs) in
         grouped(runs, |run| (&run.scene, run.size, run.points, &run.implementation))
     {
+        let (whole, swept): (Vec<&Run>, Vec<&Run>) = runs.into_iter().partition(|run| run.is_default());
+        if swept.is_empty() {
+            continue;
+        }
         let title = format!("{}, {} points", titled(scene, size), format::count(points));
         let name = format!("lowpass-{}-{points}-{}", format::scene(scene), implementation.label());
-        let error = lines(&runs, Run::rmse);
-        let time = lines(&runs, Run::ms);
+        let [error, time] = [lines(&swept, Run::rmse), lines(&swept, Run::ms)];
         let axes = |y| [("--lowpass, px²", Scale::Linear), (y, Scale::Linear)];
-        let work = format::time_heading(runs.iter().copied());
+        let work = format::time_heading(swept.iter().copied());
         let mut plots = Vec::new();
         for (what, y, lines) in [("error", "RMSE, linear light", error), ("time", &*work, time)] {
             if !lines.is_empty() {
@@ -32,14 +35,17 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
         }
         groups.push(html! {
             div.plots { @for plot in &plots { (plot) } }
-            p.caption { (implementation.label()) ". " (sentence(&runs)) }
+            p.caption { (implementation.label()) ", " code { (fixed(&swept)) } ". " (sentence(&swept)) " " (compared(&whole)) }
         });
     }
     Ok((!groups.is_empty()).then(|| html! {
         p {
             code { "--lowpass" } ": variance that widens the attribute footprint, px²; 0 widens by just enough that each splat covers a pixel "
             "centre. " code { "--cutoff" } ": where the kernel ends, σ. " code { "--widen all" } ": all splats are widened; "
-            code { "--widen small" } ": only splats smaller than the filter, up to its size."
+            code { "--widen small" } ": only splats smaller than the filter, up to its size. Lines are of splats alone: all of the filter is in the "
+            "splats. What " code { "surfel render" } " draws without options filters mostly pixels, after shading, by "
+            code { "--pixel-filter" } "; splats have what is left of " code { "--lowpass" } ", so that variances below that of the pixels' filter "
+            "would be one picture."
         }
         @for group in &groups { (group) }
     }))
@@ -69,36 +75,39 @@ fn lines(runs: &[&Run], of: impl Fn(&Run) -> Option<f64>) -> Vec<Line> {
     groups.into_iter().map(line).filter(|line| !line.points.is_empty()).collect()
 }
 
-/// The best settings by error and by time, and the defaults relative to them.
+/// Settings that all lines share, beside the swept ones.
+fn fixed(swept: &[&Run]) -> String {
+    let differ = format::differing_settings(swept.iter().copied());
+    let own = |i: usize| SHOWN.contains(&i) && !differ[i];
+    format::selected_settings(&swept[0].settings, std::array::from_fn(own))
+}
+
+/// Places of the pixels' filter, α and edges among [`format::settings`].
+const SHOWN: [usize; 3] = [1, 7, 8];
+
+/// The settings of least error and of least time.
 fn sentence(runs: &[&Run]) -> String {
     let least = |of: fn(&Run) -> Option<f64>| {
         let known = runs.iter().filter_map(|run| Some((*run, of(run)?)));
         known.min_by(|a, b| a.1.total_cmp(&b.1))
     };
     let Some((best, rmse)) = least(Run::rmse) else { return "No error was measured.".into() };
-    let number = |value| format::significant(value, 3);
-    let mut text = format!("Least error: {} with RMSE {}{}", named(best), number(rmse), timed(best));
-    let fastest = least(Run::ms);
-    if let Some((run, _)) = fastest {
-        let error = run.rmse().map(|rmse| format!(" with RMSE {}", number(rmse))).unwrap_or_default();
+    let mut text = format!("Least error: {} with RMSE {}{}", named(best), format::error(rmse), timed(best));
+    if let Some((run, _)) = least(Run::ms) {
+        let error = run.rmse().map(|rmse| format!(" with RMSE {}", format::error(rmse))).unwrap_or_default();
         text += &format!("; least time: {}{error}{}", named(run), timed(run));
     }
-    let defaults = RunSettings::defaults();
-    let same = |run: &&&Run| {
-        let RunSettings { cutoff, lowpass, widen, .. } = &run.settings;
-        (*cutoff, *lowpass, widen) == (defaults.cutoff, defaults.lowpass, &defaults.widen)
-    };
-    let Some(own) = runs.iter().find(same) else {
-        return text + ". The default settings were not measured.";
-    };
-    text += &format!(". The default settings, {}", named(own));
-    if let Some(error) = own.rmse() {
-        text += &format!(", have RMSE {}, {} the least", number(error), more(error, rmse));
-    }
-    if let (Some(ms), Some((_, least))) = (own.ms(), fastest) {
-        text += &format!(", and take {} ms, {} the fastest", format::ms(ms), more(ms, least));
-    }
     text + "."
+}
+
+/// What is drawn without options.
+fn compared(whole: &[&Run]) -> String {
+    let Some((run, rmse)) = whole.iter().find_map(|run| Some((*run, run.rmse()?))) else {
+        return "What is drawn without options was not measured.".into();
+    };
+    let options =
+        format::selected_settings(&run.settings, std::array::from_fn(|i| i < 4 || SHOWN.contains(&i)));
+    format!("Without options, {options}: RMSE {}{}.", format::error(rmse), timed(run))
 }
 
 fn named(run: &Run) -> String {
@@ -108,12 +117,4 @@ fn named(run: &Run) -> String {
 
 fn timed(run: &Run) -> String {
     run.ms().map(|ms| format!(" in {} ms", format::ms(ms))).unwrap_or_default()
-}
-
-/// By how much `value` exceeds `least`.
-fn more(value: f64, least: f64) -> String {
-    match 100.0 * (value / least - 1.0) {
-        none if none < 0.05 => "as".into(),
-        percent => format!("{} % above", format::significant(percent, 2)),
-    }
 }

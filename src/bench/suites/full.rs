@@ -26,7 +26,7 @@ pub(super) fn plans(scans: &[Rc<Subject>]) -> Vec<Plan> {
     let scans = UserInputs { subjects: scans.to_vec(), ..Default::default() };
     plans.extend(inputs::plans(Suite::Full, &scans));
     plans.extend(scenes().flat_map(views));
-    let (variances, cutoffs) = ([0.0, 0.25, 0.5, 0.75, 1.0], [1.5, 2.0, 2.5, 3.0, 4.0]);
+    let (variances, cutoffs) = ([0.0, 0.25, 0.5, 0.75, 1.0], [1.5, 2.0, 2.5, 3.0, 3.5, 4.0]);
     for (scene, points) in
         [("scene:bumpy-sphere", 100_000), ("scene:bumpy-sphere", 1_000_000), ("scene:plane", 1_000_000)]
     {

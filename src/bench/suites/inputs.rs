@@ -120,6 +120,7 @@ fn add_variant(plans: &mut Vec<Plan>, plan: &Plan, (method, settings): &(Method,
 
 #[cfg(test)]
 mod tests {
+    use super::super::unfiltered;
     use super::*;
     use crate::settings::methods::{confetti, perspective_ewa};
 
@@ -136,7 +137,7 @@ mod tests {
     #[test]
     fn variants_are_added_once() {
         let level = |method: Method| (method, Settings { lod: 2.0, ..method.settings() });
-        let sharp = Settings { lowpass: 0.0, ..perspective_ewa::METHOD.settings() };
+        let sharp = unfiltered(&perspective_ewa::METHOD.settings());
         let inputs = |variants| UserInputs {
             subjects: vec![Rc::new(Subject::scene("scene:torus").unwrap())],
             points: vec![1000],

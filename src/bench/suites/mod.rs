@@ -22,7 +22,7 @@ use super::plan::{Measurements, Plan};
 use super::record::Experiment;
 use super::stopwatch::Effort;
 use crate::settings::methods::{Method, perspective_ewa, pull_push};
-use crate::settings::{Choice, Hierarchy, Settings, Shading, Widen};
+use crate::settings::{Alpha, Choice, Edges, Hierarchy, Settings, Shading, Widen};
 use crate::verify::baseline::Kind;
 use crate::verify::scenes;
 use crate::verify::truth;
@@ -135,15 +135,25 @@ fn methods(plan: &Plan) -> impl Iterator<Item = Plan> + use<> {
     others.map(move |method| plan.by(&method))
 }
 
-/// The plan by `methods` and by every baseline. The default method keeps the plan's measurements, and renders without a low-pass filter, too; the
+/// Splats alone: α is a mask, and what filters is in the splats.
+fn splats_alone(settings: &Settings) -> Settings {
+    Settings { pixel_filter: 0.0, alpha: Alpha::Mask, edges: Edges::Nearest, ..settings.clone() }
+}
+
+/// Splats alone without a low-pass filter: each pixel shows single samples.
+fn unfiltered(settings: &Settings) -> Settings {
+    Settings { lowpass: 0.0, ..splats_alone(settings) }
+}
+
+/// The plan by `methods` and by every baseline. The default method keeps the plan's measurements, and renders [`unfiltered`], too; the
 /// other methods measure `others`, the rest time and error.
 fn every(plan: &Plan, methods: &[Method], others: Measurements) -> Vec<Plan> {
     let measured = |measurements, plan: Plan| Plan { measurements, ..plan };
     let by = |method: &Method| match *method == perspective_ewa::METHOD {
         true => {
-            let mut sharp = measured(Measurements::BOTH, plan.by(method));
-            sharp.settings.lowpass = 0.0;
-            vec![plan.by(method), sharp]
+            let own = plan.by(method);
+            let sharp = Plan { settings: unfiltered(&own.settings), ..own.clone() };
+            vec![own, measured(Measurements::BOTH, sharp)]
         }
         false => vec![measured(others, plan.by(method))],
     };
@@ -170,8 +180,8 @@ fn baseline(plan: &Plan, kind: Kind) -> Plan {
     plan.by_engine(Engine::Baseline(kind))
 }
 
-/// Cost and benefit of the low-pass filter: its variance, px², from 0 to 1, the kernel's cut-off, σ, and which splats
-/// it widens.
+/// Cost and benefit of the low-pass filter of splats alone: its variance, px², from 0 to 1, the kernel's cut-off, σ, and which splats
+/// it widens. Last the default, most of whose filter is of pixels, after shading.
 fn lowpass(
     suite: Suite,
     scene: &str,
@@ -180,10 +190,10 @@ fn lowpass(
     variances: &[f32],
     cutoffs: &[f32],
 ) -> Vec<Plan> {
+    let default = plan(suite, Experiment::Lowpass, scene, points, size);
     let one = |widen, cutoff, lowpass| {
-        let mut plan = plan(suite, Experiment::Lowpass, scene, points, size);
-        plan.settings = Settings { widen, cutoff, lowpass, ..plan.settings };
-        plan
+        let settings = Settings { widen, cutoff, lowpass, ..splats_alone(&default.settings) };
+        Plan { settings, ..default.clone() }
     };
     let some = |widen| {
         // A filter without variance widens nothing.
@@ -192,19 +202,16 @@ fn lowpass(
             .iter()
             .flat_map(move |&cutoff| variances.clone().map(move |&variance| one(widen, cutoff, variance)))
     };
-    some(Widen::All).chain(some(Widen::Small)).collect()
+    some(Widen::All).chain(some(Widen::Small)).chain([default.clone()]).collect()
 }
 
-/// A checkerboard to the horizon, with the low-pass filter off and on. Pixels hold so many points that the remaining
-/// error is the filter's.
+/// A checkerboard to the horizon, by splats alone with the low-pass filter off and on, and by the default. Pixels hold so many points that the
+/// remaining error is the filter's.
 fn aliasing(suite: Suite, size: [u32; 2]) -> Vec<Plan> {
-    let one = |lowpass: f32| {
-        let mut plan = plan(suite, Experiment::Aliasing, "scene:plane?frequency=2", 1_000_000, size);
-        plan.settings.lowpass = lowpass;
-        plan.measurements = Measurements { flicker: true, images: true, ..Measurements::BOTH };
-        plan
-    };
-    [0.0, 1.0].map(one).into()
+    let plan = plan(suite, Experiment::Aliasing, "scene:plane?frequency=2", 1_000_000, size);
+    let measurements = Measurements { flicker: true, images: true, ..Measurements::BOTH };
+    let by = |settings| Plan { settings, measurements, ..plan.clone() };
+    [unfiltered(&plan.settings), splats_alone(&plan.settings), plan.settings.clone()].map(by).into()
 }
 
 #[cfg(test)]
@@ -227,6 +234,51 @@ mod tests {
         // The bench sets the number of points.
         let is_subject = |scene: &String| scenes::camera(scene).is_ok() && !scene.contains("points=");
         scenes.iter().for_each(|scene| assert!(is_subject(scene), "{scene}"));
+    }
+
+    #[test]
+    fn where_the_filter_is_swept_splats_have_all_of_it() {
+        for suite in [Suite::Quick, Suite::Full] {
+            let plans = suite.plans(&UserInputs::default());
+            let of = |experiment| plans.iter().filter(move |plan| plan.experiment == experiment);
+            for experiment in [Experiment::Lowpass, Experiment::Aliasing] {
+                let (whole, swept): (Vec<_>, Vec<_>) = of(experiment).partition(|plan| {
+                    plan.settings == Settings { shading: plan.settings.shading, ..Default::default() }
+                });
+                // The default is compared with, once a scene and number of points.
+                let compared: HashSet<_> = swept.iter().map(|plan| (&plan.scene, plan.points)).collect();
+                assert_eq!(whole.len(), compared.len());
+                for Settings { pixel_filter, alpha, edges, .. } in swept.iter().map(|plan| &plan.settings) {
+                    assert_eq!((*pixel_filter, *alpha, *edges), (0.0, Alpha::Mask, Edges::Nearest));
+                }
+                let cutoff = Settings::default().cutoff;
+                assert!(swept.iter().any(|plan| plan.settings.cutoff == cutoff), "{experiment:?}");
+            }
+            // All that are swept are different pictures.
+            let widths = of(Experiment::Lowpass).map(|plan| {
+                let own = &plan.settings;
+                let width = (own.attribute_lowpass().to_bits(), own.cutoff.to_bits());
+                (&plan.scene, plan.points, width, own.widen, own.pixel_filter > 0.0)
+            });
+            assert_eq!(widths.clone().collect::<HashSet<_>>().len(), widths.count());
+        }
+    }
+
+    #[test]
+    fn without_a_filter_there_is_none_at_all() {
+        for suite in [Suite::Quick, Suite::Full] {
+            let plans = suite.plans(&UserInputs::default());
+            let default = |plan: &&Plan| {
+                plan.engine == Engine::DEFAULT && plan.implementation().method == "perspective-ewa"
+            };
+            let sharp: Vec<_> =
+                plans.iter().filter(default).filter(|plan| plan.settings.lowpass == 0.0).collect();
+            assert!(sharp.iter().any(|plan| plan.experiment == Experiment::Budget));
+            for plan in sharp {
+                let Settings { pixel_filter, alpha, .. } = plan.settings;
+                assert_eq!((pixel_filter, alpha), (0.0, Alpha::Mask), "{:?}", plan.experiment);
+            }
+        }
     }
 
     #[test]

@@ -1,11 +1,11 @@
 //! A first impression of everything.
 
-use super::{Suite, aliasing, baselines, every, lowpass, plan};
+use super::{Suite, aliasing, baselines, every, lowpass, plan, unfiltered};
 use crate::bench::plan::{Measurements, Plan};
 use crate::bench::record::Experiment;
 use crate::bench::subject::Subject;
+use crate::settings::Shading;
 use crate::settings::methods::{Method, pull_push};
-use crate::settings::{Settings, Shading};
 use std::rc::Rc;
 
 const SIZE: [u32; 2] = [320, 320];
@@ -21,7 +21,7 @@ pub(super) fn plans(scans: &[Rc<Subject>]) -> Vec<Plan> {
         Some(scan) => plans.extend(of_scan(scan)),
         None => plans.extend(scene("scene:part", Shading::Lit, false)),
     }
-    plans.extend(lowpass(Suite::Quick, "scene:bumpy-sphere", MIDDLE, SIZE, &[0.0, 0.5, 1.0], &[1.5, 2.5]));
+    plans.extend(lowpass(Suite::Quick, "scene:bumpy-sphere", MIDDLE, SIZE, &[0.0, 0.5, 1.0], &[1.5, 3.5]));
     plans.extend(aliasing(Suite::Quick, [256, 256]));
     plans
 }
@@ -44,10 +44,10 @@ fn scene(name: &str, shading: Shading, by_all: bool) -> Vec<Plan> {
     POINTS.into_iter().flat_map(each).collect()
 }
 
-/// The default plan, the same without a low-pass filter, by pull–push, and by the CPU baseline.
+/// The default plan, the same without any filter, by pull–push, and by the CPU baseline.
 fn some(plan: &Plan) -> Vec<Plan> {
     let others = |settings| Plan { measurements: Measurements::BOTH, settings, ..plan.clone() };
-    let sharp = others(Settings { lowpass: 0.0, ..plan.settings.clone() });
+    let sharp = others(unfiltered(&plan.settings));
     let pull_push = others(plan.settings.clone()).by(&pull_push::METHOD);
     let [splats, pixels, _] = baselines(plan);
     vec![plan.clone(), sharp, pull_push, splats, pixels]
