@@ -154,6 +154,29 @@ pub fn time_heading<'a>(runs: impl IntoIterator<Item = &'a Run>) -> String {
     format!("{} of a frame, ms", time_of(runs))
 }
 
+/// The filters of the exact pictures that these runs are compared with, as names.
+fn truth_filters<'a>(runs: impl IntoIterator<Item = &'a Run>) -> Vec<&'a str> {
+    let errors = runs.into_iter().filter_map(|run| run.error.as_ref());
+    distinct(errors.map(|error| if error.filter == "gaussian" { "Gaussian" } else { error.filter.as_str() }))
+}
+
+/// What the errors of these runs are against, as the label of an axis.
+pub fn error_heading<'a>(what: &str, runs: impl IntoIterator<Item = &'a Run>) -> String {
+    match truth_filters(runs) {
+        none if none.is_empty() => format!("{what}, linear light"),
+        filters => format!("{what}, linear light (truth: {})", filters.join(" or ")),
+    }
+}
+
+/// A filter of exact pictures by its name in results, in words.
+pub fn truth_filter(name: &str) -> &str {
+    match name {
+        "gaussian" => "a Gaussian with a variance of 1 px²",
+        "box" => "the mean over each pixel",
+        other => other,
+    }
+}
+
 /// A disturbance of a run's times.
 pub fn disturbance(disturbance: &Disturbance) -> String {
     match disturbance {

@@ -1,5 +1,6 @@
 //! One call of the bench: all runs of some suites on one machine.
 
+use super::engine::{Engine, TracedFilter};
 use super::plan::Plan;
 use super::record::{
     Ceilings, Clock, Gpu, Host, Missing, Provenance, Run, RunSettings, SPLATS, Session, Sweep, Time,
@@ -11,7 +12,7 @@ use super::{ceilings, code, hard, time_limit};
 use crate::error::{Error, Result};
 use crate::progress::Progress;
 use crate::settings::{Choice, RasterizerChoice, Settings};
-use crate::verify::baseline;
+use crate::verify::{baseline, truth};
 use crate::vk::Device;
 use jiff::Timestamp;
 use std::path::PathBuf;
@@ -36,6 +37,8 @@ pub struct SessionOptions {
     pub validated: bool,
     /// Folder that caches exact pictures.
     pub cache: Option<PathBuf>,
+    /// Filter of exact pictures.
+    pub filter: truth::Filter,
     /// Time for all suites together: see [`time_limit`].
     pub limit: Option<Duration>,
     /// The command that repeats the session.
@@ -53,7 +56,13 @@ pub fn measure(
 ) -> (Session, Result<()>) {
     let (session, start) = (begin(&options), Instant::now());
     let before = session.provenance.seconds;
-    let plans: Vec<_> = options.suites.iter().map(|suite| suite.plans(&options.inputs)).collect();
+    let mut plans: Vec<_> = options.suites.iter().map(|suite| suite.plans(&options.inputs)).collect();
+    if options.filter == truth::Filter::Box {
+        // Ray tracing with the truth's filter is the same.
+        plans
+            .iter_mut()
+            .for_each(|plans| plans.retain(|plan| plan.engine != Engine::Traced(TracedFilter::Box)));
+    }
     let total = plans.iter().map(|plans| plans.len() as u64).sum();
     let mut measuring = Measuring { options: &options, progress, keep, session, before, start, total };
     let ended = measuring.all(plans);
@@ -130,12 +139,12 @@ impl Measuring<'_> {
 
     /// Measures the groups of a suite that are not in the session.
     fn suite(&mut self, suite: Suite, plans: Vec<Plan>, until: Option<Instant>) -> Result<()> {
-        let SessionOptions { device, rasterizer, cache, inputs, .. } = self.options;
+        let SessionOptions { device, rasterizer, cache, inputs, filter, .. } = self.options;
         let of_suite = Options {
             device: device.clone(),
             rasterizer: *rasterizer,
             cache: cache.clone(),
-            truth: time_limit::truth(suite, until),
+            truth: truth::Options { filter: *filter, ..time_limit::truth(suite, until) },
             effort: time_limit::effort(suite.effort(), plans.len(), until),
             until,
         };

@@ -4,6 +4,7 @@ use super::args::{Bench, With};
 use super::files::{self, cache_folder, read_json};
 use super::interrupt::{self, Interruptible};
 use super::{progress, rasterizers, vulkan};
+use clap::ValueEnum;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -19,6 +20,7 @@ use surfel::formats::{self, atomic};
 use surfel::load::scene;
 use surfel::settings::Choice;
 use surfel::settings::methods::Method;
+use surfel::verify::truth;
 use surfel::vk::Device;
 use surfel::{Error, Progress, RasterizerChoice, Result, Settings};
 
@@ -214,6 +216,7 @@ fn command(args: &Bench, suites: &[Suite]) -> String {
     option("size", args.size.map(|[width, height]| format!("{width}x{height}")));
     let named = suites.iter().filter(|suite| **suite != Suite::Inputs);
     option("suite", list(named.map(|suite| suite.name().to_owned()).collect()));
+    option("filter", args.filter.and_then(|filter| Some(filter.to_possible_value()?.get_name().to_owned())));
     option("scans", path(&args.scans));
     // Without the last bits, which are not those of what was typed.
     let minutes = |limit: Duration| (limit.as_secs_f64() / 60.0 * 1e6).round() / 1e6;
@@ -286,6 +289,7 @@ fn wanted(args: &Bench, suites: Vec<Suite>, progress: &dyn Progress) -> Result<S
         device,
         validated: args.device.validate,
         cache: cache_folder().filter(|_| !args.no_cache).map(|folder| folder.join("truth")),
+        filter: args.filter.map_or(truth::Filter::DEFAULT, truth::Filter::from),
         limit: args.minutes,
     })
 }

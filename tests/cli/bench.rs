@@ -56,6 +56,20 @@ fn an_input_is_measured_stored_and_reported_again() {
 }
 
 #[test]
+fn the_truths_filter_can_be_chosen() {
+    let Some(program) = Program::with_device("the_truths_filter_can_be_chosen") else { return };
+    let arguments = "scene:torus --points 500 --method sprites --size 32x32 --filter box";
+    let run = program.run(&format!("bench {arguments} --json a.json --report page --quiet"));
+    assert_eq!(run.code, 0, "{}", run.err);
+    let session = &json(&program, "a.json")["sessions"][0];
+    assert_eq!(session["provenance"]["command"], format!("surfel bench {arguments}"));
+    let runs = session["runs"].as_array().unwrap();
+    assert!(runs.iter().all(|run| run["error"]["filter"] == "box"));
+    let page = std::fs::read_to_string(program.path("page/index.html")).unwrap();
+    assert!(page.contains("RMSE, linear light (truth: box)") && !page.contains("truth: Gaussian"));
+}
+
+#[test]
 fn results_of_other_versions_are_marked() {
     let program = Program::new();
     let provenance = r#""version":"0.1.0","commit":"0123456789","code":"another","date":"2026-01-02T03:04:05Z","seconds":1.0,
@@ -77,6 +91,7 @@ fn invalid_arguments_of_bench_are_refused_first() {
     assert!(refused("--from none.json", 1).contains("none.json: missing field"));
     assert!(refused("--from later.json", 1).contains("format 99"));
     assert!(refused("--from later.json --report file", 2).contains("is no folder"));
+    assert!(refused("--filter point", 2).contains("point"));
     assert!(refused("--suite slow", 2).contains("slow"));
     for minutes in ["0", "-1", "NaN", "inf", "1e300", "soon"] {
         assert!(refused(&format!("--minutes={minutes}"), 2).contains(minutes));

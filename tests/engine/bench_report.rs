@@ -273,6 +273,7 @@ fn the_low_pass_of_splats_is_compared_with_what_is_drawn_without_options() {
         whole.contains("Without options, --lowpass 1 --pixel-filter gaussian:0.75 --cutoff 3.5"),
         "{whole}"
     );
+    assert!(whole.contains("RMSE, linear light (truth: Gaussian)"));
     results.sessions[0].runs.retain(|run| !run.is_default());
     assert!(section(&results).contains("What is drawn without options was not measured."));
 }

@@ -7,6 +7,7 @@ use surfel::bench::record::{Run, Session};
 use surfel::bench::subject::Subject;
 use surfel::bench::suites::UserInputs;
 use surfel::bench::{SessionOptions, Suite};
+use surfel::verify::truth::Filter;
 
 #[test]
 fn a_session_ends_in_time_and_lists_what_is_missing() {
@@ -18,6 +19,7 @@ fn a_session_ends_in_time_and_lists_what_is_missing() {
             rasterizer: Default::default(),
             validated: false,
             cache: None,
+            filter: Filter::DEFAULT,
             limit,
             earlier: None,
             command: String::new(),
@@ -54,6 +56,7 @@ fn of_input(scene: &str, points: Vec<u64>, earlier: Option<Session>) -> SessionO
         rasterizer: Default::default(),
         validated: false,
         cache: None,
+        filter: Filter::DEFAULT,
         limit: None,
         earlier,
         command: "surfel bench".into(),
@@ -70,6 +73,23 @@ fn times_are_relative_to_the_baseline_of_the_same_picture() {
     for run in baselines {
         assert_eq!(run.time.as_ref().unwrap().baseline_ratio, Some(1.0), "{}", run.settings.shading);
     }
+}
+
+#[test]
+fn errors_are_against_the_filter_of_the_options() {
+    let of = |filter| {
+        let options = SessionOptions { filter, ..of_input("scene:sphere", vec![200], None) };
+        let (session, _) = surfel::bench::measure(options, &(), &mut |_| Ok(()));
+        let traced = session.runs.iter().filter(|run| run.implementation.method == "baseline-traced");
+        assert_eq!(traced.count(), if filter == Filter::Box { 2 } else { 4 });
+        let splats = session.runs.into_iter().find(|run| run.implementation.method == "baseline-splats");
+        let error = splats.unwrap().error.unwrap();
+        (error.filter, error.metrics["rmse"])
+    };
+    let [(gaussian, smooth), (mean, sharp)] = [Filter::DEFAULT, Filter::Box].map(of);
+    assert_eq!([gaussian.as_str(), &mean], ["gaussian", "box"]);
+    // The baseline filters by the same Gaussian.
+    assert!(sharp > 1.2 * smooth, "{smooth} {sharp}");
 }
 
 /// Cancels what observes it.

@@ -1,7 +1,7 @@
 //! Aliasing: texture finer than pixels, with the low-pass filter off and on.
 
 use super::page::{Page, titled};
-use super::path::{self, FLICKER, RMSE, followed, largest, line, ring};
+use super::path::{self, followed, largest, line, ring};
 use super::plot::{Line, Plot, Style};
 use crate::bench::format;
 use crate::bench::group::{distinct, grouped};
@@ -61,7 +61,8 @@ fn plots(page: &mut Page<'_>, title: &str, runs: &[&Run]) -> io::Result<Markup> 
     rings.iter_mut().take(1).for_each(|ring| ring.label = "popping".into());
     flickers.extend(rings);
     let mut figures = Vec::new();
-    for (what, y, lines) in [("error", RMSE, errors), ("flicker", FLICKER, flickers)] {
+    let [rmse, flicker] = ["RMSE", "flicker"].map(|what| format::error_heading(what, runs.iter().copied()));
+    for (what, y, lines) in [("error", &rmse, errors), ("flicker", &flicker, flickers)] {
         let name = format!("path-{title}-{what}");
         figures.push(page.plot(Plot::of(name, format!("{title}: {what} by frame"), path::axes(y), lines))?);
     }

@@ -15,8 +15,10 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
     let exact = plots(page, session, true)?;
     let own = plots(page, session, false)?;
     let any = !exact.is_empty() || !own.is_empty();
-    let is_traced =
-        session.runs.iter().any(|run| run.implementation.method == TRACED && run.rmse().is_some());
+    let mut traced =
+        session.runs.iter().filter(|run| run.implementation.method == TRACED && run.rmse().is_some());
+    let is_boxed = traced.clone().any(|run| run.implementation.variant == BOX_FILTER);
+    let is_traced = traced.next().is_some();
     Ok(any.then(|| html! {
         p {
             @if !exact.is_empty() { "Lower left is better. " }
@@ -24,8 +26,9 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
             "each number. Pale markers are its other settings. Rings mark what "
             code { "surfel render" } " draws without options, but for the shading. Dashed lines are the CPU baseline, which is no method. "
             @if is_traced { code { (TRACED) } " below the plots is what tracing 16 rays a pixel gives: of the exact surface of a built-in scene, or of the "
-            "triangles between the same points of a scan, with the truth's filter. " code { (TRACED) " " (BOX_FILTER) } " is the mean of 16 rays over "
-            "the pixel's square: what a triangle renderer with 16 samples a pixel shows of the same points." }
+            "triangles between the same points of a scan, with the truth's filter. " }
+            @if is_boxed { code { (TRACED) " " (BOX_FILTER) } " is the mean of 16 rays over the pixel's square: what a triangle renderer with 16 "
+            "samples a pixel shows of the same points." }
         }
         @if !exact.is_empty() {
             p {
@@ -48,14 +51,17 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
 /// The plots of runs against exact pictures, or against the methods' own references.
 fn plots(page: &mut Page<'_>, session: &Session, exact: bool) -> io::Result<Vec<Markup>> {
     let compared = |run: &&Run| run.experiment == Experiment::Budget && run.has_truth() == exact;
-    let error = if exact { "RMSE, linear light" } else { "RMSE against the method's own reference" };
     let mut plots = Vec::new();
     for (view, runs) in grouped(session.runs.iter().filter(compared), Run::view) {
         let candidates = candidates(runs);
         if !candidates.is_empty() {
             let runs = candidates.iter().map(|candidate| candidate.run);
-            let time = format::time_heading(runs);
-            let axes = [(time.as_str(), Scale::Log), (error, Scale::Log)];
+            let time = format::time_heading(runs.clone());
+            let error = match exact {
+                true => format::error_heading("RMSE", runs),
+                false => "RMSE against the method's own reference".into(),
+            };
+            let axes = [(time.as_str(), Scale::Log), (error.as_str(), Scale::Log)];
             let name = format!("time-error-{}", title(&view));
             let (traced, drawn): (Vec<_>, Vec<_>) =
                 candidates.into_iter().partition(|candidate| candidate.run.implementation.method == TRACED);

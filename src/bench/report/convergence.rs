@@ -22,7 +22,8 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
     let mut plots = Vec::new();
     for (view, runs) in grouped(runs, Run::view) {
         if let Some((implementation, setting, runs)) = most_points(&runs) {
-            let axes = [("points", Scale::Log), ("RMSE and its terms, linear light", Scale::Log)];
+            let error = format::error_heading("RMSE and its terms", runs.iter().copied());
+            let axes = [("points", Scale::Log), (error.as_str(), Scale::Log)];
             let name = format!("error-points-{}", title(&view));
             let largest = runs.iter().filter_map(|run| run.rmse()).fold(0.0, f64::max);
             let plot = Plot::of(name, title(&view), axes, lines(&runs)).above(SHOWN * largest);

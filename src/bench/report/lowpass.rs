@@ -26,8 +26,9 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
         let [error, time] = [lines(&swept, Run::rmse), lines(&swept, Run::ms)];
         let axes = |y| [("--lowpass, px²", Scale::Linear), (y, Scale::Linear)];
         let work = format::time_heading(swept.iter().copied());
+        let rmse = format::error_heading("RMSE", swept.iter().copied());
         let mut plots = Vec::new();
-        for (what, y, lines) in [("error", "RMSE, linear light", error), ("time", &*work, time)] {
+        for (what, y, lines) in [("error", &rmse, error), ("time", &work, time)] {
             if !lines.is_empty() {
                 let plot = Plot::of(format!("{name}-{what}"), format!("{title}: {what}"), axes(y), lines);
                 plots.push(page.plot(plot)?);

@@ -83,7 +83,7 @@ fn truth(runs: &[Run]) -> String {
     };
     let filters = |against| {
         let names: BTreeSet<&str> = of(against).map(|error| error.filter.as_str()).collect();
-        let names = names.into_iter().map(filter).collect::<Vec<_>>().join(" and ");
+        let names = names.into_iter().map(format::truth_filter).collect::<Vec<_>>().join(" and ");
         Some(names).filter(|names| !names.is_empty())
     };
     let worst = of(Against::Surface).map(|error| error.truth_rms).fold(0.0, f64::max);
@@ -100,14 +100,6 @@ fn truth(runs: &[Run]) -> String {
     match exact.into_iter().chain(own).collect::<Vec<_>>() {
         none if none.is_empty() => "no run was compared with the truth".into(),
         all => all.join("; "),
-    }
-}
-
-fn filter(name: &str) -> &str {
-    match name {
-        "gaussian" => "a Gaussian with a variance of 1 px²",
-        "box" => "the mean over each pixel",
-        other => other,
     }
 }
 

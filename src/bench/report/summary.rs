@@ -3,7 +3,7 @@
 use super::page::{Page, title};
 use crate::bench::disturbance::disturbances;
 use crate::bench::format;
-use crate::bench::group::grouped;
+use crate::bench::group::{distinct, grouped};
 use crate::bench::recommendations::{Candidate, Column, Recommendations, within_error, within_time};
 use crate::bench::record::{RunSettings, Session, TRACED};
 use crate::bench::standings::{Standing, standings};
@@ -27,6 +27,7 @@ pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
             code { (format::selected_settings(&RunSettings::defaults(), NAMED)) } "."
             (disturbed(session)) (few_frames(session))
         }
+        (truth(session))
         h3 { "Least error within a time budget" }
         (table(session, &format::time_heading(&session.runs), columns, times, time, |column, ms| {
             within_time(&column.front, ms).map(|best| (best, Vec::new()))
@@ -169,6 +170,20 @@ fn disturbed(session: &Session) -> Markup {
         " and are marked: measure again on a quiet machine. Busy machine: logical processors that other programs used. Waited: the wall time of "
         "a frame, and the one that its work takes in like runs."
     } }
+}
+
+/// The filter of the truth, by which methods are ranked.
+fn truth(session: &Session) -> Markup {
+    let errors = session.runs.iter().filter(|run| run.has_truth()).filter_map(|run| run.error.as_ref());
+    let filters = distinct(errors.map(|error| error.filter.as_str()));
+    html! { @for filter in filters { p {
+        "Errors are against exact pictures filtered by " strong { (format::truth_filter(filter)) } ". A method that filters otherwise, or not at all, has "
+        "an error by that alone: "
+        @if filter == "gaussian" {
+            "methods as published, whose outlines are not filtered, and what has no filter have more of it than presets that filter by nearly the same Gaussian. "
+            code { "--filter box" } " measures against the mean over each pixel."
+        } @else { "presets that filter by a Gaussian have more of it than with " code { "--filter gaussian" } "." }
+    } } }
 }
 
 /// How many of the session's times have no interval; ray tracing is timed once anyway.

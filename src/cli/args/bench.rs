@@ -2,12 +2,13 @@
 
 use super::{DeviceArgs, With};
 use crate::cli::values::{method, one_of, positive, size, whole};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::time::Duration;
 use surfel::bench::Suite;
 use surfel::settings::methods::Method;
+use surfel::verify::truth;
 
 /// Options of `surfel bench`.
 #[derive(Args, Debug)]
@@ -33,6 +34,9 @@ pub struct Bench {
     /// Suites to measure [default: quick, unless INPUT or --from is given]
     #[arg(long, value_parser = one_of(Suite::BUILT_IN), value_delimiter = ',', value_name = "SUITE,…")]
     pub suite: Vec<Suite>,
+    /// Filter of the exact pictures that errors are against [default: gaussian]
+    #[arg(long, value_enum)]
+    pub filter: Option<TruthFilter>,
     /// Folder of scans that quick, the first one by name only, and full measure beside the built-in scenes
     #[arg(long, value_name = "DIR")]
     pub scans: Option<PathBuf>,
@@ -69,6 +73,24 @@ pub struct Bench {
     /// Prints nothing but warnings and errors
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+/// Filter of exact pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TruthFilter {
+    /// A Gaussian with a variance of 1 px²: the filter of EWA splatting, and nearly that of most presets
+    Gaussian,
+    /// The mean over the pixel's square
+    Box,
+}
+
+impl From<TruthFilter> for truth::Filter {
+    fn from(filter: TruthFilter) -> Self {
+        match filter {
+            TruthFilter::Gaussian => Self::DEFAULT,
+            TruthFilter::Box => Self::Box,
+        }
+    }
 }
 
 /// Most minutes of a time limit: about two years.

@@ -16,6 +16,11 @@ pub enum Filter {
     Point,
 }
 
+impl Filter {
+    /// A Gaussian with a variance of 1 px².
+    pub const DEFAULT: Self = Self::Gaussian { variance: 1.0 };
+}
+
 /// Options of an exact image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
@@ -29,7 +34,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { filter: Filter::Gaussian { variance: 1.0 }, error: 1.0 / 1024.0, most_samples: 1024 }
+        Self { filter: Filter::DEFAULT, error: 1.0 / 1024.0, most_samples: 1024 }
     }
 }
 
