@@ -6,6 +6,7 @@ use std::error::Error;
 use std::sync::Arc;
 use std::time::Duration;
 use surfel::bench::engine::LoadedEngine;
+use surfel::bench::record::Clock;
 use surfel::bench::stopwatch::{Effort, Sample, Samples, Work, take_turns, timed};
 use surfel::bench::{format, frame_times};
 use surfel::frame::times::Statistics;
@@ -62,8 +63,8 @@ impl<'a> Row<'a> {
 
 /// A Markdown table of times, each as the median with its 95 % interval.
 pub struct Table {
-    /// Whether ratios are of wall time, as a GPU does the work.
-    by_wall: bool,
+    /// What ratios are of: wall time where a GPU does the work.
+    clock: Clock,
 }
 
 impl Table {
@@ -71,7 +72,8 @@ impl Table {
     pub fn new(about: &str, device: Option<&Device>) -> Self {
         machine(about, device);
         head(&["", "CPU ms", "wall ms", "ratio", "rate"]);
-        Self { by_wall: device.is_some_and(|device| device.description().kind != DeviceDescription::CPU) }
+        let by_wall = device.is_some_and(|device| device.description().kind != DeviceDescription::CPU);
+        Self { clock: if by_wall { Clock::Wall } else { Clock::Cpu } }
     }
 
     /// Times rows in turns, and prints them. Ratios are to the first one, of CPU time, or on a GPU of wall time.
@@ -80,7 +82,7 @@ impl Table {
             rows.into_iter().map(|row| ((row.what, row.amount), row.work)).unzip();
         let all = take_turns(&mut works, &EFFORT).into_iter().collect::<Result<Vec<_>>>()?;
         for (i, ((what, amount), samples)) in names.into_iter().zip(&all).enumerate() {
-            let ratio = (i > 0).then(|| samples.ratio(&all[0], self.by_wall)).flatten();
+            let ratio = (i > 0).then(|| samples.ratio(&all[0], self.clock)).flatten();
             print(&what, samples, ratio, amount);
         }
         if let Some(others) = all.iter().find_map(|samples| samples.others).filter(|others| *others > BUSY) {

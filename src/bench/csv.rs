@@ -168,6 +168,10 @@ fn time(session: &Session, run: &Run) -> Vec<Cell> {
     row.extend(spread("device_time", by_timestamps.map(|time| time.by(Clock::Gpu))));
     row.push(("baseline_ratio".into(), number(time.and_then(|time| time.baseline_ratio))));
     row.extend(spread("ratio", run.ratio));
+    row.push((
+        "ratio_clock".into(),
+        run.ratio_of().map(|clock| <&str>::from(clock).into()).unwrap_or_default(),
+    ));
     row
 }
 

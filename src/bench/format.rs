@@ -141,7 +141,16 @@ pub fn with_options(implementation: &Implementation, settings: &str) -> String {
 
 /// What the times of these runs are.
 pub fn time_of<'a>(runs: impl IntoIterator<Item = &'a Run>) -> &'static str {
-    let clocks: Vec<Clock> = runs.into_iter().filter_map(|run| Some(run.time.as_ref()?.clock)).collect();
+    time_by(runs.into_iter().filter_map(|run| Some(run.time.as_ref()?.clock)))
+}
+
+/// What the ratios of these runs are of.
+pub fn ratio_of<'a>(runs: impl IntoIterator<Item = &'a Run>) -> &'static str {
+    time_by(runs.into_iter().filter_map(Run::ratio_of))
+}
+
+fn time_by(clocks: impl Iterator<Item = Clock>) -> &'static str {
+    let clocks: Vec<Clock> = clocks.collect();
     match () {
         () if clocks.contains(&Clock::Gpu) => "GPU time",
         () if clocks.contains(&Clock::Wall) => "wall time",

@@ -6,7 +6,7 @@ mod truths;
 use super::engine::{CpuEngine, DeviceEngine, Engine, LoadedEngine, TracedEngine, TracedFilter};
 use super::papers::details;
 use super::plan::{Measurements, Plan};
-use super::record::{self, Against, Float64Error, Images, Run, RunSettings, Time};
+use super::record::{self, Against, Clock, Float64Error, Images, Run, RunSettings, Time};
 use super::stopwatch::Effort;
 use super::subject::{Subject, pixel_angle};
 use super::{error_terms, frame_times, hidden, images, work};
@@ -253,7 +253,8 @@ impl Runner {
         (run.points, run.octree) = (job.points, job.octree);
         run.overlap = job.subject.area().map(|area| overlap(&job.model.surfels, area));
         if let Some(base) = &plan.base {
-            run.ratio = self.ratio(&job, &mut *engine, base)?;
+            let (ratio, clock) = self.ratio(&job, &mut *engine, base)?;
+            (run.ratio, run.ratio_clock) = (ratio, Some(clock));
         }
         let measurements = plan.measurements;
         if measurements.error
@@ -293,13 +294,13 @@ impl Runner {
         Ok(run)
     }
 
-    /// Times frames relative to those of `base`.
+    /// Times frames relative to those of `base`, and by which clock.
     fn ratio(
         &mut self,
         job: &Job<'_>,
         engine: &mut (dyn LoadedEngine + 'static),
         base: &Plan,
-    ) -> Result<Option<Statistics>> {
+    ) -> Result<(Option<Statistics>, Clock)> {
         let other = self.job(base)?;
         let mut others = self.load(&other, &other.model)?;
         let first = (&mut *others, &other.camera, &base.settings);
@@ -474,6 +475,7 @@ fn blank(plan: &Plan, from: Option<Viewpoint>) -> Run {
         refused: None,
         time: None::<Time>,
         ratio: None,
+        ratio_clock: None,
         error: None,
         float64_error: None,
         work: Vec::new(),

@@ -1,6 +1,7 @@
 //! Times of repeated work: whatever takes turns is warmed up, sampled and summed up here.
 
 use super::load::Load;
+use super::record::Clock;
 use crate::frame::times::{Statistics, Times};
 use crate::vk::PassTime;
 use cpu_time::{ProcessTime, ThreadTime};
@@ -142,10 +143,14 @@ impl Samples {
         self.passes.passes()
     }
 
-    /// Time relative to that of `base`, which took turns with this work: each quotient is of the same turn. Of processor time, or of wall time
-    /// where a GPU does the work.
-    pub fn ratio(&self, base: &Self, by_wall: bool) -> Option<Statistics> {
-        let of = |samples: &Self| if by_wall { &samples.wall } else { &samples.cpu }.clone();
+    /// Time by this clock relative to that of `base`, which took turns with this work: each quotient is of the same turn. None without times by
+    /// this clock.
+    pub fn ratio(&self, base: &Self, clock: Clock) -> Option<Statistics> {
+        let of = |samples: &Self| match clock {
+            Clock::Gpu => samples.device.clone(),
+            Clock::Cpu => samples.cpu.clone(),
+            Clock::Wall => samples.wall.clone(),
+        };
         let quotients: Vec<f64> = of(self).iter().zip(of(base)).map(|(own, base)| own / base).collect();
         Statistics::of(&quotients)
     }
@@ -200,8 +205,8 @@ mod tests {
         let found = take_turns(&mut [rising(1.0), rising(4.0)], &THREE);
         let [base, own] = [0, 1].map(|i| found[i].as_ref().unwrap());
         assert_eq!((own.warmup, own.count(), own.wall().min, own.wall().max), (1, 3, 8.0, 16.0));
-        assert_eq!(own.ratio(base, true).map(|ratio| (ratio.min, ratio.max)), Some((4.0, 4.0)));
-        assert_eq!(own.ratio(base, false).map(|ratio| ratio.median), Some(1.0));
+        assert_eq!(own.ratio(base, Clock::Wall).map(|ratio| (ratio.min, ratio.max)), Some((4.0, 4.0)));
+        assert_eq!(own.ratio(base, Clock::Cpu).map(|ratio| ratio.median), Some(1.0));
         assert_eq!(own.passes().map(|(name, ms)| (name, ms.min)).collect::<Vec<_>>(), [("surface", 2.0)]);
         assert_eq!(own.device().map(|sum| sum.median), Some(3.0));
     }

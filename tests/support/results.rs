@@ -94,6 +94,7 @@ pub fn run(experiment: Experiment, scene: &str, points: u64, ms: f64, rmse: f64)
         refused: None,
         time: Some(time(ms)),
         ratio: None,
+        ratio_clock: None,
         error: Some(Error {
             against: Against::Surface,
             filter: "gaussian".into(),

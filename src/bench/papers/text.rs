@@ -112,7 +112,7 @@ pub(in crate::bench) fn run_label(run: &Run, runs: &[&Run]) -> String {
 }
 
 fn cost_lines(text: &mut String, session: &Session) {
-    let mut title = Some("\ncosts: ratio of times, alternating frames: median (95 % interval)");
+    let mut title = Some("\ncosts: ratio of the work of alternating frames: median (95 % interval)");
     for cost in &costs::ALL {
         let runs = runs(&session.runs, Experiment::Claims, cost.name);
         let [_, dearer] = runs[..] else { continue };

@@ -50,9 +50,14 @@ pub struct Run {
     pub refused: Option<String>,
     /// Times of frames; none if it was not timed.
     pub time: Option<Time>,
-    /// Its wall time relative to another run, whose frames alternate with its own; none without another run.
+    /// Its work relative to that of another run, whose frames alternate with its own, by [`ratio_clock`](Self::ratio_clock); none without
+    /// another run.
     #[serde(default)]
     pub ratio: Option<Statistics>,
+    /// What the ratio is of: the clock of both runs, or wall time if their clocks differ. Without it, processor time on devices that are
+    /// processors, and wall time on others.
+    #[serde(default)]
+    pub ratio_clock: Option<Clock>,
     /// Error against the truth; none if it was not compared.
     pub error: Option<Error>,
     /// Error against the float64 reference; none if it was not compared.
@@ -369,6 +374,13 @@ impl Run {
     /// Median [work](Time::work) of a frame, ms; none if it was not timed, or if the time is not above 0.
     pub fn ms(&self) -> Option<f64> {
         self.time.as_ref().map(|time| time.work().median).filter(|ms| ms.is_finite() && *ms > 0.0)
+    }
+
+    /// What its ratio is of; none without a ratio.
+    pub fn ratio_of(&self) -> Option<Clock> {
+        let is_cpu = self.time.as_ref().is_none_or(|time| time.clock == Clock::Cpu);
+        let of_older = if is_cpu { Clock::Cpu } else { Clock::Wall };
+        self.ratio.map(|_| self.ratio_clock.unwrap_or(of_older))
     }
 
     /// A metric, if it was computed.

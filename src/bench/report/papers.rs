@@ -37,9 +37,10 @@ fn measured(session: &Session, which: fn(&Cost) -> bool) -> Vec<(&'static Cost, 
 
 fn table_of_costs(page: &Page<'_>, session: &Session, costs: &[(&Cost, Vec<&Run>)]) -> Markup {
     let any = costs.iter().any(|(cost, _)| cost.says.is_some());
+    let time = format::ratio_of(costs.iter().flat_map(|(_, runs)| runs.iter().copied()));
     html! {
         p {
-            "Ratio of times of alternating frames: the median with its 95 % interval. "
+            "Ratio of the work of alternating frames, " (time) ": the median with its 95 % interval. "
             @if any {
                 "As in the paper is an interval that lies within what is published, not so one that lies outside; otherwise it is open. "
             }
