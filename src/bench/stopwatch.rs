@@ -7,7 +7,7 @@ use crate::vk::PassTime;
 use cpu_time::{ProcessTime, ThreadTime};
 use std::time::{Duration, Instant};
 
-/// How many turns are timed: between `least` and `most`, while the time lasts.
+/// How many turns of each piece of work are timed: between `least` and `most`, while the time lasts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
     /// Warm-up turns: the first one creates pipelines and targets.
@@ -16,7 +16,7 @@ pub struct Effort {
     pub least: usize,
     /// Greatest number of timed turns.
     pub most: usize,
-    /// Time for all turns together.
+    /// Time for all turns of a piece of work; of several that take turns, on average.
     pub budget: Duration,
     /// Time after which one turn suffices.
     pub until: Option<Instant>,
@@ -98,13 +98,6 @@ impl Samples {
         Ok(samples)
     }
 
-    fn wants_more(&self, effort: &Effort) -> bool {
-        if effort.until.is_some_and(|until| Instant::now() >= until) {
-            return self.count() == 0;
-        }
-        self.count() < effort.least || (self.count() < effort.most && self.spent < effort.budget)
-    }
-
     fn take<E>(&mut self, work: &mut Work<'_, E>) -> Result<(), E> {
         let start = Instant::now();
         let Sample { wall, cpu, passes } = work()?;
@@ -156,31 +149,36 @@ impl Samples {
     }
 }
 
-/// Times several pieces of work that take turns, so that other load on the machine affects all alike.
+/// Times several pieces of work that take turns, equally often from the first turn to the last, so that other load on the machine affects all alike.
 ///
 /// # Errors
 /// Those of its turns for each of them; the others go on.
 pub fn take_turns<E>(all: &mut [Work<'_, E>], effort: &Effort) -> Vec<Result<Samples, E>> {
     let mut found: Vec<_> = all.iter_mut().map(|work| Samples::warm_up(work, effort)).collect();
     let load = Load::start();
-    loop {
-        let mut any = false;
+    while want_more(&found, effort) {
         for (work, samples) in all.iter_mut().zip(&mut found) {
             let Ok(own) = samples else { continue };
-            if own.wants_more(effort) {
-                any = true;
-                if let Err(error) = own.take(work) {
-                    *samples = Err(error);
-                }
+            if let Err(error) = own.take(work) {
+                *samples = Err(error);
             }
-        }
-        if !any {
-            break;
         }
     }
     let others = load.others();
     found.iter_mut().flatten().for_each(|samples| samples.others = others);
     found
+}
+
+/// Whether works that have all had as many turns take another.
+fn want_more<E>(found: &[Result<Samples, E>], effort: &Effort) -> bool {
+    let working = || found.iter().flatten();
+    let Some(turns) = working().map(Samples::count).next() else { return false };
+    if effort.until.is_some_and(|until| Instant::now() >= until) {
+        return turns == 0;
+    }
+    let spent: Duration = working().map(|samples| samples.spent).sum();
+    let budget = effort.budget * working().count() as u32;
+    turns < effort.least || (turns < effort.most && spent < budget)
 }
 
 #[cfg(test)]
@@ -209,6 +207,27 @@ mod tests {
         assert_eq!(own.ratio(base, Clock::Cpu).map(|ratio| ratio.median), Some(1.0));
         assert_eq!(own.passes().map(|(name, ms)| (name, ms.min)).collect::<Vec<_>>(), [("surface", 2.0)]);
         assert_eq!(own.device().map(|sum| sum.median), Some(3.0));
+    }
+
+    #[test]
+    fn fast_work_takes_as_many_turns_as_slow_work() {
+        let order = std::cell::RefCell::new(Vec::new());
+        let work = |name, ms| -> Work<'_, ()> {
+            let order = &order;
+            Box::new(move || {
+                std::thread::sleep(Duration::from_millis(ms));
+                order.borrow_mut().push(name);
+                Ok(Sample::default())
+            })
+        };
+        let effort = Effort { most: 20, budget: Duration::from_millis(6), ..THREE };
+        let found = take_turns(&mut [work("slow", 2), work("fast", 0)], &effort);
+        let [slow, fast] = [0, 1].map(|i| found[i].as_ref().unwrap().count());
+        assert!(slow == fast && slow < 20, "{slow} {fast}");
+        // To the end, after their warm-up.
+        let order = order.into_inner();
+        let turns = &order[order.len() - 2 * slow..];
+        assert!(turns.chunks(2).all(|turn| turn == ["slow", "fast"]), "{turns:?}");
     }
 
     #[test]

@@ -69,7 +69,7 @@ fn frames(runs: &[Run]) -> String {
         }
     };
     format!(
-        "{} per run after {} warm-up frames; frames of methods with the same points take turns; times are of a frame \
+        "{} per run after {} warm-up frames; methods with the same points take turns, frame by frame and equally often; times are of a frame \
          without read-back",
         counts(|time| time.frames),
         counts(|time| time.warmup)
