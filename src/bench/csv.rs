@@ -4,7 +4,7 @@
 use super::format;
 use super::group::distinct;
 use super::record::{
-    Ceilings, Clock, Float64Error, Memory, PassWork, Rate, Results, Run, Session, SweepPoint,
+    Ceilings, Clock, Float64Error, Memory, PassWork, Rate, Results, Run, Session, SweepPoint, Viewpoint,
 };
 use crate::error::{Error, Result};
 use crate::frame::times::Statistics;
@@ -15,7 +15,7 @@ use std::collections::BTreeSet;
 /// A cell with the name of its column.
 type Cell = (String, String);
 
-/// One row per run: its session, settings, times, error against the truth and error against float64. Each metric has a
+/// One row per run: its session, settings, viewpoint, times, error with what it is against, and error against float64. Each metric has a
 /// column of its name. Times have `NAME`, `NAME:min`, `NAME:max`, and `NAME:low` and `NAME:high` of the median's interval; passes are `pass:NAME`,
 /// and their least work is `pass:NAME:bytes`, `pass:NAME:pixels` and `pass:NAME:atomics`. `stale` says whether the
 /// session's source digest differs from `code`. Times are in ms, memory in bytes.
@@ -30,7 +30,10 @@ pub fn runs(results: &Results, code: &str) -> Result<String> {
     let passes = distinct(passes.map(|pass| &*pass.name));
     let row = |(session, run): (&Session, &Run)| {
         let mut row = provenance(session, code);
-        row.extend([what(run), time(session, run), error(run), memory(&run.memory)].into_iter().flatten());
+        let viewpoint = viewpoint(run.viewpoint.as_ref());
+        row.extend(
+            [what(run), viewpoint, time(session, run), error(run), memory(&run.memory)].into_iter().flatten(),
+        );
         row.extend(float64_error(run.float64_error.as_ref()));
         row.extend(metrics.iter().map(|name| (name.clone(), number(run.metric(name)))));
         row.extend(passes.iter().flat_map(|name| pass(run, name)));
@@ -119,7 +122,6 @@ fn what(run: &Run) -> Vec<Cell> {
         ("radius_scale", run.radius_scale.to_string()),
         ("width", run.size[0].to_string()),
         ("height", run.size[1].to_string()),
-        ("viewpoint", run.viewpoint.as_ref().map(|from| from.place.clone()).unwrap_or_default()),
         ("method", run.implementation.method.clone()),
         ("variant", run.implementation.variant.clone()),
         ("cutoff", setting.cutoff.to_string()),
@@ -150,6 +152,22 @@ fn what(run: &Run) -> Vec<Cell> {
         ("images", run.images.map(|index| index.to_string()).unwrap_or_default()),
     ])
     .collect()
+}
+
+/// Name and coordinates of a viewpoint.
+fn viewpoint(from: Option<&Viewpoint>) -> Vec<Cell> {
+    let mut row = vec![("viewpoint".to_owned(), from.map(|from| from.place.clone()).unwrap_or_default())];
+    let points = [
+        ("eye", from.map(|from| from.eye)),
+        ("target", from.map(|from| from.target)),
+        ("up", from.map(|from| from.up)),
+    ];
+    for (name, point) in points {
+        let axes = ["x", "y", "z"].into_iter().enumerate();
+        row.extend(axes.map(|(i, axis)| (format!("{name}:{axis}"), number(point.map(|point| point[i])))));
+    }
+    row.push(("fov_y_deg".into(), number(from.map(|from| from.fov_y_deg))));
+    row
 }
 
 fn time(session: &Session, run: &Run) -> Vec<Cell> {
@@ -206,7 +224,11 @@ fn error(run: &Run) -> Vec<Cell> {
     let error = run.error.as_ref();
     let terms = error.map(|error| error.terms);
     cells([
+        ("against", error.map(|error| <&str>::from(error.against).to_owned()).unwrap_or_default()),
+        ("surface", error.map(|error| error.surface.clone()).unwrap_or_default()),
         ("truth_filter", error.map(|error| error.filter.clone()).unwrap_or_default()),
+        ("truth_target", number(error.map(|error| error.target))),
+        ("truth_most_samples", number(error.map(|error| f64::from(error.most_samples)))),
         ("truth_rms", number(error.map(|error| error.truth_rms))),
         ("term:silhouette", number(terms.map(|terms| terms.silhouette))),
         ("term:inside", number(terms.map(|terms| terms.inside))),

@@ -33,6 +33,16 @@ fn csv_holds_every_number() {
                 "{metric}"
             );
         }
+        let error = run.error.as_ref();
+        assert_eq!(cell("against"), error.map_or("", |_| "surface"));
+        assert_eq!(cell("surface"), error.map_or("", |error| error.surface.as_str()));
+        assert_eq!(number("truth_target"), error.map(|error| error.target));
+        assert_eq!(number("truth_most_samples"), error.map(|error| f64::from(error.most_samples)));
+        let from = run.viewpoint.as_ref().unwrap();
+        assert_eq!(["eye:x", "eye:y", "eye:z"].map(number), from.eye.map(Some));
+        assert_eq!(["target:x", "target:y", "target:z"].map(number), from.target.map(Some));
+        assert_eq!(["up:x", "up:y", "up:z"].map(number), from.up.map(Some));
+        assert_eq!(number("fov_y_deg"), Some(from.fov_y_deg));
         assert_eq!(number("term:hidden"), run.error.as_ref().and_then(|error| error.terms.hidden));
         assert_eq!(number("f64:colour"), run.float64_error.map(|float64_error| float64_error.colour));
     }
