@@ -1,7 +1,7 @@
 //! The HTML report of synthetic results.
 
 use crate::support::results::*;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use surfel::bench::record::*;
 use surfel::bench::{Results, csv, report, table};
 
@@ -278,3 +278,61 @@ fn the_low_pass_of_splats_is_compared_with_what_is_drawn_without_options() {
     assert!(section(&results).contains("What is drawn without options was not measured."));
 }
 
+/// The time-error plot of these runs of a scene, as SVG.
+fn time_error(runs: Vec<Run>) -> String {
+    let mut results = plausible();
+    results.sessions[0].runs = runs;
+    check(&results);
+    files(&results, CODE).remove("time-error-a-512-512-lit.svg").unwrap()
+}
+
+/// A run by the preset of a method.
+fn by(method: &str, points: u64, ms: f64) -> Run {
+    Run {
+        implementation: Implementation { method: method.into(), variant: String::new() },
+        settings: RunSettings::preset(method),
+        ..run(Experiment::Budget, "scene:a", points, ms, 0.05)
+    }
+}
+
+#[test]
+fn a_method_has_the_same_style_in_every_report() {
+    let blue = "#0072B2";
+    let [default, sprites] =
+        ["perspective-ewa", "sprites"].map(|name| time_error(vec![by(name, 1000, 10.0)]));
+    assert!(default.contains(blue) && !sprites.contains(blue));
+    // By a variant it keeps the colour, with another marker.
+    let mut variant = by("perspective-ewa", 2000, 20.0);
+    variant.implementation.variant = "--rasterizer draw".into();
+    let both = time_error(vec![by("perspective-ewa", 1000, 10.0), variant]);
+    // Numbers of corners of blue markers.
+    let corners = |svg: &str| -> BTreeSet<usize> {
+        let polygons = svg.split("<polygon").skip(1).map(|rest| rest.split("/>").next().unwrap());
+        let points = polygons.filter(|polygon| polygon.contains(blue)).map(|polygon| {
+            polygon.split("points=\"").nth(1).unwrap().split('"').next().unwrap().split_whitespace().count()
+        });
+        points.collect()
+    };
+    assert_eq!([&default, &both].map(|svg| corners(svg).len()), [1, 2]);
+}
+
+#[test]
+fn times_have_their_intervals_and_disturbed_ones_are_crossed() {
+    let spread = |share: f64| {
+        let mut run = by("sprites", 1000, 10.0);
+        run.time.as_mut().unwrap().cpu.interval = Some([10.0 * (1.0 - share), 10.0 * (1.0 + share)]);
+        run
+    };
+    let mut few = spread(0.5);
+    few.time.as_mut().unwrap().frames = 3;
+    // Between others, so that the axes stay as they are.
+    let plot = |run| time_error(vec![run, by("confetti", 10, 1.0), by("object-ewa", 10, 100.0)]);
+    let [plain, none] = [spread(0.5), few].map(plot);
+    let lines = |svg: &str| svg.matches("<polyline").count() + svg.matches("<line").count();
+    // A line with a cap at either end.
+    assert_eq!(lines(&plain), lines(&none) + 3);
+    assert!(!plain.contains("disturbed"));
+    let mut busy = spread(0.5);
+    busy.time.as_mut().unwrap().others = Some(1.5);
+    assert!(plot(busy).contains("disturbed"));
+}

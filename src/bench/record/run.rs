@@ -5,6 +5,7 @@ use crate::frame::times::{FEWEST, Statistics};
 use crate::settings::methods::Method;
 use crate::settings::splatting::Splatting;
 use crate::settings::{Alpha, Choice, Edges, Settings};
+use crate::verify::baseline;
 use crate::verify::metrics::path::PathValues;
 use crate::verify::reference::Comparison;
 use schemars::JsonSchema;
@@ -431,8 +432,11 @@ impl RunSettings {
         Self::of(&Settings::default())
     }
 
-    /// The default settings of a method; [`defaults`](Self::defaults) if there is no such method.
+    /// The default settings of a method or of the CPU baseline; [`defaults`](Self::defaults) if there is no such method.
     pub fn preset(method: &str) -> Self {
+        if [SPLATS, PIXELS].contains(&method) {
+            return Self::of(&baseline::settings(&Settings::default()));
+        }
         Method::named(method).map_or_else(Self::defaults, |method| Self::of(&method.settings()))
     }
 }

@@ -2,6 +2,7 @@
 
 use super::page::{Page, title};
 use super::plot::{Kind, Line, Plot, Scale, Style};
+use crate::bench::disturbance::disturbances;
 use crate::bench::format;
 use crate::bench::group::{distinct, grouped};
 use crate::bench::recommendations::{Candidate, candidates, front};
@@ -24,7 +25,8 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
             @if !exact.is_empty() { "Lower left is better. " }
             "A line joins the runs of a method over the number of points, with the settings of least error for "
             "each number. Pale markers are its other settings. Rings mark what "
-            code { "surfel render" } " draws without options, but for the shading. Dashed lines are the CPU baseline, which is no method. "
+            code { "surfel render" } " draws without options, but for the shading. Dashed lines are the CPU baseline, which is no method. Bars are 95 % intervals of the median "
+            "time, which fewer than six frames do not give; crosses are times that were disturbed. "
             @if is_traced { code { (TRACED) } " below the plots is what tracing 16 rays a pixel gives: of the exact surface of a built-in scene, or of the "
             "triangles between the same points of a scan, with the truth's filter. " }
             @if is_boxed { code { (TRACED) " " (BOX_FILTER) } " is the mean of 16 rays over the pixel's square: what a triangle renderer with 16 "
@@ -65,7 +67,7 @@ fn plots(page: &mut Page<'_>, session: &Session, exact: bool) -> io::Result<Vec<
             let name = format!("time-error-{}", title(&view));
             let (traced, drawn): (Vec<_>, Vec<_>) =
                 candidates.into_iter().partition(|candidate| candidate.run.implementation.method == TRACED);
-            let plot = page.plot(Plot::of(name, title(&view), axes, lines(page, &drawn, exact)))?;
+            let plot = page.plot(Plot::of(name, title(&view), axes, lines(page, session, &drawn, exact)))?;
             plots.push(html! { div { (plot) (far_below(&traced, &drawn)) } });
         }
     }
@@ -88,7 +90,7 @@ fn far_below(traced: &[Candidate<'_>], drawn: &[Candidate<'_>]) -> Markup {
     html! { @for (label, all) in captions { p.caption { code { (label) } ", by points: " (all) "." } } }
 }
 
-fn lines(page: &Page<'_>, candidates: &[Candidate<'_>], exact: bool) -> Vec<Line> {
+fn lines(page: &Page<'_>, session: &Session, candidates: &[Candidate<'_>], exact: bool) -> Vec<Line> {
     let methods: Vec<Candidate> =
         candidates.iter().filter(|o| exact && !o.run.implementation.is_baseline()).copied().collect();
     let best = front(&methods);
@@ -97,6 +99,10 @@ fn lines(page: &Page<'_>, candidates: &[Candidate<'_>], exact: bool) -> Vec<Line
         let band = Style { kind: Kind::Band, ..Style::default() };
         lines.push(Line { notes: counts(&best), ..Line::new("Pareto front", band, places(&best)) });
     }
+    let disturbed = candidates.iter().filter(|candidate| !disturbances(session, candidate.run).is_empty());
+    let disturbed: Vec<_> = disturbed.copied().collect();
+    let crosses = Style { kind: Kind::Crosses, ..Style::default() };
+    lines.extend((!disturbed.is_empty()).then(|| Line::new("disturbed", crosses, places(&disturbed))));
     let default: Vec<_> = candidates.iter().filter(|candidate| candidate.run.is_default()).copied().collect();
     let ring = Style { kind: Kind::Ring, ..Style::default() };
     lines.extend((!default.is_empty()).then(|| Line::new("without options", ring, places(&default))));
@@ -113,6 +119,7 @@ fn lines(page: &Page<'_>, candidates: &[Candidate<'_>], exact: bool) -> Vec<Line
             lines.push(Line::new("", style, places(candidates)));
         }
         lines.push(Line::new(implementation.label(), style, places(&joined)));
+        lines.push(Line::new("", Style { kind: Kind::Whiskers, ..style }, intervals(&joined)));
     }
     lines
 }
@@ -127,6 +134,15 @@ fn counts(front: &[Candidate<'_>]) -> Vec<String> {
 
 fn places(candidates: &[Candidate<'_>]) -> Vec<[f64; 2]> {
     candidates.iter().map(|candidate| [candidate.ms, candidate.rmse]).collect()
+}
+
+/// Ends of the 95 % intervals of the times.
+fn intervals(candidates: &[Candidate<'_>]) -> Vec<[f64; 2]> {
+    let ends = |candidate: &Candidate<'_>| {
+        let interval = candidate.run.time.as_ref()?.work().interval?;
+        Some(interval.map(|ms| [ms, candidate.rmse]))
+    };
+    candidates.iter().filter_map(ends).flatten().collect()
 }
 
 /// For each number of points the run of least error, in ascending order.

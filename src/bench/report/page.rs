@@ -10,7 +10,8 @@ use crate::bench::format;
 use crate::bench::group::distinct;
 use crate::bench::machines::Machine;
 use crate::bench::place;
-use crate::bench::record::{Implementation, Results, Run, Session, View};
+use crate::bench::record::{Implementation, PIXELS, Results, Run, SPLATS, Session, TRACED, View};
+use crate::settings::methods::Method;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::io;
 
@@ -22,7 +23,7 @@ pub struct Page<'a> {
     commit: &'a str,
     /// Names and contents of the SVG files.
     pub plots: Vec<(String, String)>,
-    /// In the order of their first run, so that each has one style everywhere.
+    /// In the order of their first run.
     implementations: Vec<&'a Implementation>,
 }
 
@@ -139,9 +140,13 @@ impl<'a> Page<'a> {
         format::stale(&session.provenance, self.code, self.commit)
     }
 
-    /// Line style of an implementation.
+    /// Line style of an implementation: that of its method, which is the same in every report, but for the markers of variants.
     pub fn style(&self, implementation: &Implementation) -> Style {
-        Style::nth(self.implementations.iter().position(|known| *known == implementation).unwrap_or(0))
+        let of_method = Style::nth(number(&implementation.method));
+        let mut variants = self.implementations.iter().filter(|known| known.method == implementation.method);
+        let variant = variants.position(|known| *known == implementation).unwrap_or(0);
+        let is_plain = implementation.variant.is_empty();
+        Style { marker: of_method.marker + if is_plain { 0 } else { variant }, ..of_method }
     }
 
     /// Draws a plot, adds it to the files, and returns it for the page.
@@ -165,6 +170,14 @@ impl<'a> Page<'a> {
         let free = std::iter::once(name.to_owned()).chain(numbered).find(|name| !taken(name));
         free.unwrap_or_default()
     }
+}
+
+/// Number of a method among ours, the baselines, and all others that can be chosen: the first nine have colours of their own.
+fn number(method: &str) -> usize {
+    let (own, others) = Method::CHOICES.split_at(Method::OWN.len());
+    let [own, others] = [own, others].map(|methods| methods.iter().map(|method| method.name));
+    let all: Vec<&str> = own.chain([SPLATS, PIXELS, TRACED]).chain(others).collect();
+    all.iter().position(|known| *known == method).unwrap_or(all.len())
 }
 
 /// The commands of the runs' pictures and exact pictures, to be opened.

@@ -1,6 +1,6 @@
 //! Drawing of plots.
 
-use super::labels::{Area, Occupied, width};
+use super::labels::{Area, Occupied, width, wrap};
 use super::legend::{self, Legend};
 use super::style::{FAULT, GREY, GRID, INK};
 use super::{Axis, Kind, Limit, Line, Plot, Style, svg};
@@ -24,6 +24,12 @@ pub(super) const LEFT: i32 = 78;
 const RIGHT: i32 = 18;
 const ABOVE: i32 = 10;
 const BELOW: i32 = 50;
+/// Height of a further line of a label, px.
+const LINE: i32 = 17;
+/// Half the height of the caps of intervals, px.
+const CAP: i32 = 6;
+/// Width and height of the arms of a cross that shows behind a marker, px.
+const BEHIND: i32 = 7;
 /// Radius of a marker, px.
 const RADIUS: f64 = 4.2;
 
@@ -38,15 +44,26 @@ pub(super) type Drawn<T = ()> = Result<T, DrawingAreaErrorKind<std::io::Error>>;
 pub fn draw(plot: &Plot) -> std::io::Result<[String; 2]> {
     let mut drawing = String::new();
     let legend = legend::lay_out(plot);
-    let size = [WIDTH, HEAD + legend.height + BODY].map(|length| length as u32);
+    let across = across(plot);
+    let size = [WIDTH, HEAD + legend.height + BODY + more_below(&across)].map(|length| length as u32);
     let fine = size.map(|length| length * FINE as u32);
-    paint(plot, &legend, SVGBackend::with_string(&mut drawing, fine.into()))
+    paint(plot, &legend, &across, SVGBackend::with_string(&mut drawing, fine.into()))
         .map_err(|error| std::io::Error::other(error.to_string()))?;
     Ok([svg::Use::File, svg::Use::Inline]
         .map(|usage| svg::with_head(plot, &drawing, size, FINE as u32, usage)))
 }
 
-fn paint(plot: &Plot, legend: &Legend, backend: SVGBackend<'_>) -> Drawn {
+/// The label of the horizontal axis, in lines about as long as the axis: fonts may be wider.
+fn across(plot: &Plot) -> Vec<String> {
+    wrap(&plot.x.label, FONT, WIDTH - LEFT - RIGHT)
+}
+
+/// Height of all lines but the first, px.
+fn more_below(across: &[String]) -> i32 {
+    LINE * (across.len() as i32 - 1)
+}
+
+fn paint(plot: &Plot, legend: &Legend, across: &[String], backend: SVGBackend<'_>) -> Drawn {
     let root = backend.into_drawing_area();
     root.fill(&WHITE)?;
     let title = shorten(&plot.title, TITLE * 1.08, WIDTH - LEFT - RIGHT);
@@ -55,12 +72,15 @@ fn paint(plot: &Plot, legend: &Legend, backend: SVGBackend<'_>) -> Drawn {
     let top = HEAD + legend.height;
     let area = root.clone().shrink((0, top * FINE), (WIDTH * FINE, BODY * FINE));
     let mut chart = axes(plot, &area)?;
-    names(&root, plot, top)?;
+    names(&root, plot, across, top)?;
     let mut occupied = Occupied::default();
     for limit in &plot.limits {
         draw_limit(&mut chart, &root, limit)?;
     }
-    for kind in [Kind::Band, Kind::Faint, Kind::Joined, Kind::Loose, Kind::Ring] {
+    for line in plot.lines.iter().filter(|line| line.style.kind == Kind::Whiskers) {
+        whiskers(&chart, &root, line)?;
+    }
+    for kind in [Kind::Band, Kind::Crosses, Kind::Faint, Kind::Joined, Kind::Loose, Kind::Ring] {
         for line in plot.lines.iter().rev().filter(|line| line.style.kind == kind) {
             join(&mut chart, line)?;
             for (x, y) in known(line).map(|point| chart.backend_coord(&point)) {
@@ -96,11 +116,14 @@ fn axes<'a, 'b>(plot: &Plot, area: &'a Root<'b>) -> Drawn<Chart<'a, 'b>> {
     Ok(chart)
 }
 
-/// Labels of the axes.
-fn names(root: &Root<'_>, plot: &Plot, top: i32) -> Drawn {
-    let across = [LEFT + (WIDTH - LEFT - RIGHT) / 2, top + BODY - 6];
-    write(root, &plot.x.label, across, &font(FONT, INK, HPos::Center, VPos::Bottom))?;
-    let mut style = font(FONT, INK, HPos::Center, VPos::Top);
+/// Labels of the axes; the vertical one is smaller if it is too long.
+fn names(root: &Root<'_>, plot: &Plot, across: &[String], top: i32) -> Drawn {
+    for (line, below) in across.iter().zip((0..).step_by(LINE as usize)) {
+        let place = [LEFT + (WIDTH - LEFT - RIGHT) / 2, top + BODY - 6 + below];
+        write(root, line, place, &font(FONT, INK, HPos::Center, VPos::Bottom))?;
+    }
+    let fits = f64::from(BODY) / f64::from(width(&plot.y.label, FONT).max(1));
+    let mut style = font(FONT * fits.min(1.0), INK, HPos::Center, VPos::Top);
     style.font = style.font.transform(FontTransform::Rotate270);
     let middle = top + ABOVE + (BODY - ABOVE - BELOW) / 2;
     write(root, &plot.y.label, [2, middle], &style)
@@ -138,7 +161,7 @@ fn join(chart: &mut Chart<'_, '_>, line: &Line) -> Drawn {
     let colour = line.style.rgb();
     let fine = FINE as u32;
     match (line.style.kind, line.style.dashed) {
-        (Kind::Faint | Kind::Loose | Kind::Ring, _) => Ok(()),
+        (Kind::Faint | Kind::Loose | Kind::Ring | Kind::Whiskers | Kind::Crosses, _) => Ok(()),
         (Kind::Band, _) => {
             let style = GREY.mix(0.28).stroke_width(9 * fine);
             chart.draw_series(LineSeries::new(known(line), style)).map(drop)
@@ -153,6 +176,19 @@ fn join(chart: &mut Chart<'_, '_>, line: &Line) -> Drawn {
     }
 }
 
+/// Draws horizontal intervals with caps.
+fn whiskers(chart: &Chart<'_, '_>, root: &Root<'_>, line: &Line) -> Drawn {
+    let style = line.style.rgb().stroke_width(FINE as u32);
+    for ends in line.points.chunks_exact(2).filter(|ends| !ends.as_flattened().iter().any(|x| x.is_nan())) {
+        let [(low, y), (high, _)] = [ends[0], ends[1]].map(|[x, y]| chart.backend_coord(&(x, y)));
+        root.draw(&PathElement::new([(low, y), (high, y)], style))?;
+        for x in [low, high] {
+            root.draw(&PathElement::new([(x, y - CAP * FINE), (x, y + CAP * FINE)], style))?;
+        }
+    }
+    Ok(())
+}
+
 /// Draws a marker at a position in fine units, with a white rim.
 pub(super) fn mark(root: &Root<'_>, [x, y]: [i32; 2], style: &Style) -> Drawn {
     let shape = |radius: f64, colour: RGBAColor| {
@@ -161,7 +197,8 @@ pub(super) fn mark(root: &Root<'_>, [x, y]: [i32; 2], style: &Style) -> Drawn {
         Polygon::new(style.outline().into_iter().map(corner).collect::<Vec<_>>(), colour.filled())
     };
     match style.kind {
-        Kind::Band => Ok(()),
+        Kind::Band | Kind::Whiskers => Ok(()),
+        Kind::Crosses => cross(root, [x, y], BEHIND, FAULT),
         Kind::Ring => {
             let circle =
                 Circle::new((x, y), 2.0 * RADIUS * f64::from(FINE), INK.stroke_width(2 * FINE as u32));
@@ -236,15 +273,19 @@ fn marks(chart: &Chart<'_, '_>, root: &Root<'_>, plot: &Plot, within: Area) -> D
     let y = within[1] + 5 * FINE;
     for mark in plot.marks.iter().filter(|mark| !mark.x.is_nan()) {
         let (x, _) = chart.backend_coord(&(mark.x, chart.y_range().end));
-        cross(root, [x, y], mark.fault)?;
+        fault(root, [x, y], mark.fault)?;
     }
     Ok(())
 }
 
-/// Draws a cross at a position in fine units.
-pub(super) fn cross(root: &Root<'_>, [x, y]: [i32; 2], fault: bool) -> Drawn {
-    let arm = 4 * FINE;
-    let colour = if fault { FAULT } else { GREY };
+/// Draws the mark of a fault or of a refusal at a position in fine units.
+pub(super) fn fault(root: &Root<'_>, place: [i32; 2], fault: bool) -> Drawn {
+    cross(root, place, 4, if fault { FAULT } else { GREY })
+}
+
+/// Draws a cross at a position in fine units, with arms of this width and height, px.
+fn cross(root: &Root<'_>, [x, y]: [i32; 2], arm: i32, colour: RGBColor) -> Drawn {
+    let arm = arm * FINE;
     for slope in [-arm, arm] {
         let ends = [(x - arm, y - slope), (x + arm, y + slope)];
         root.draw(&PathElement::new(ends, colour.stroke_width(2 * FINE as u32)))?;

@@ -17,6 +17,18 @@ pub fn width(text: &str, font: f64) -> i32 {
     (text.chars().map(wide).sum::<f64>() * font).ceil() as i32
 }
 
+/// Breaks a text at spaces into lines of at most `most` px; a longer word is a line of its own.
+pub fn wrap(text: &str, font: f64, most: i32) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if width(&format!("{line} {word}"), font) <= most => *line += &format!(" {word}"),
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
 /// Occupied areas.
 #[derive(Debug, Default)]
 pub struct Occupied(Vec<Area>);
@@ -66,6 +78,14 @@ mod tests {
         assert_eq!(occupied.first_free(places, within), Some(places[1]));
         assert_eq!(occupied.first_free(places, within), Some(places[2]));
         assert_eq!(occupied.first_free([[90, 0, 101, 5]], within), None);
+    }
+
+    #[test]
+    fn texts_break_at_spaces() {
+        let all = width("one two", 10.0);
+        assert_eq!(wrap("one two three", 10.0, all), ["one two", "three"]);
+        assert_eq!(wrap("one two", 10.0, all - 1), ["one", "two"]);
+        assert_eq!(wrap("incomprehensibilities", 10.0, 5), ["incomprehensibilities"]);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The legend, in rows between title and axes, where it covers no data.
 
-use super::draw::{Drawn, FINE, FONT, LEFT, Root, WIDTH, cross, font, mark, shorten, write};
-use super::labels::{rows, width};
+use super::draw::{Drawn, FINE, FONT, LEFT, Root, WIDTH, fault, font, mark, shorten, write};
+use super::labels::{rows, width, wrap};
 use super::style::{GREY, INK};
 use super::{Kind, Plot, Style};
 use plotters::prelude::*;
@@ -24,29 +24,40 @@ pub struct Legend {
 }
 
 struct Entry {
-    label: String,
+    /// The label, broken into lines.
+    lines: Vec<String>,
     /// Style of a line; for marks, whether they are faults.
     look: Result<Style, bool>,
 }
 
-/// Lays out the lines that have labels. A single line needs no legend.
+/// Lays out the lines that have labels; one whose label is too wide for a row takes several, alone. A single line needs no legend.
 pub fn lay_out(plot: &Plot) -> Legend {
     let most = WIDTH - LEFT - 10;
-    let short = |label: &str| shorten(label, FONT, most - SAMPLE);
+    let entry = |label: &str, look| {
+        let lines = wrap(label, FONT, most - SAMPLE);
+        Entry { lines: lines.iter().map(|line| shorten(line, FONT, most - SAMPLE)).collect(), look }
+    };
     let labelled = plot.lines.iter().filter(|line| !line.label.is_empty());
-    let mut entries: Vec<Entry> =
-        labelled.map(|line| Entry { label: short(&line.label), look: Ok(line.style) }).collect();
+    let mut entries: Vec<Entry> = labelled.map(|line| entry(&line.label, Ok(line.style))).collect();
     for (fault, label) in [(true, "fault"), (false, "refused")] {
         if plot.marks.iter().any(|mark| mark.fault == fault) {
-            entries.push(Entry { label: label.into(), look: Err(fault) });
+            entries.push(entry(label, Err(fault)));
         }
     }
     if entries.len() == 1 {
         entries.clear();
     }
-    let widths: Vec<i32> = entries.iter().map(|entry| SAMPLE + width(&entry.label, FONT)).collect();
-    let (places, count) = rows(&widths, GAP, most);
-    Legend { entries, places, height: count * ROW }
+    let wide = |entry: &Entry| match entry.lines.as_slice() {
+        [line] => SAMPLE + width(line, FONT),
+        _ => most,
+    };
+    let (mut places, count) = rows(&entries.iter().map(wide).collect::<Vec<_>>(), GAP, most);
+    let mut more = 0;
+    for ((row, _), entry) in places.iter_mut().zip(&entries) {
+        *row += more;
+        more += entry.lines.len() as i32 - 1;
+    }
+    Legend { entries, places, height: (count + more) * ROW }
 }
 
 /// Draws the legend with its upper edge at `top` px.
@@ -54,7 +65,9 @@ pub fn draw(root: &Root<'_>, legend: &Legend, top: i32) -> Drawn {
     for (entry, (row, left)) in legend.entries.iter().zip(&legend.places) {
         let (x, y) = (LEFT + left, top + row * ROW + ROW / 2);
         sample(root, entry.look, [x, y])?;
-        write(root, &entry.label, [x + SAMPLE, y], &font(FONT, INK, HPos::Left, VPos::Center))?;
+        for (line, below) in entry.lines.iter().zip((0..).step_by(ROW as usize)) {
+            write(root, line, [x + SAMPLE, y + below], &font(FONT, INK, HPos::Left, VPos::Center))?;
+        }
     }
     Ok(())
 }
@@ -66,11 +79,11 @@ fn sample(root: &Root<'_>, look: Result<Style, bool>, [x, y]: [i32; 2]) -> Drawn
     let middle = (left + right) / 2;
     let style = match look {
         Ok(style) => style,
-        Err(fault) => return cross(root, [middle, y], fault),
+        Err(is_fault) => return fault(root, [middle, y], is_fault),
     };
     match (style.kind, style.dashed) {
         (Kind::Band, _) => line([left, right], GREY.mix(0.28).stroke_width(9 * fine))?,
-        (Kind::Faint | Kind::Loose | Kind::Ring, _) => {}
+        (Kind::Faint | Kind::Loose | Kind::Ring | Kind::Whiskers | Kind::Crosses, _) => {}
         (Kind::Joined, false) => line([left, right], style.rgb().stroke_width(2 * fine))?,
         (Kind::Joined, true) => {
             for start in [left, right - 6 * FINE] {

@@ -115,3 +115,51 @@ fn description(lines: &[Line], x: &str, y: &str) -> String {
     }
     text
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Texts of an SVG file, each with its horizontal position and its font size, px.
+    fn texts(svg: &str) -> Vec<(String, f64, f64)> {
+        let text = |element: &str| {
+            let (head, text) = element.split_once('>')?;
+            let value = |name: &str| {
+                let value = head.split_once(&format!(" {name}=\""))?.1.split('"').next()?;
+                value.parse::<f64>().ok().map(|value| value / f64::from(draw::FINE))
+            };
+            Some((text.split('<').next()?.trim().to_owned(), value("x")?, value("font-size")?))
+        };
+        svg.split("<text").skip(1).filter_map(text).collect()
+    }
+
+    fn plot(x: &str, y: &str, labels: &[&str]) -> Vec<(String, f64, f64)> {
+        let line = |label: &&str| Line::new(*label, Style::nth(0), vec![[1.0, 2.0], [3.0, 4.0]]);
+        let lines = labels.iter().map(line).collect();
+        let axes = [(x, Scale::Linear), (y, Scale::Linear)];
+        texts(&draw(&Plot::of("name".into(), "title".into(), axes, lines)).unwrap()[0])
+    }
+
+    #[test]
+    fn long_labels_of_axes_fit() {
+        let long = "distance of the eye from the plane of the discs, radii of the discs, where they are seen from the side";
+        let found = plot(long, "y", &[]);
+        let mine: Vec<_> = found.iter().filter(|(text, ..)| long.contains(text) && text.len() > 9).collect();
+        assert!(!mine.is_empty());
+        for (text, x, size) in mine {
+            let half = 0.5 * f64::from(labels::width(text, *size));
+            assert!(x - half >= 0.0 && x + half <= f64::from(draw::WIDTH), "{text} at {x}, {size} px");
+        }
+    }
+
+    #[test]
+    fn long_entries_of_the_legend_are_whole() {
+        let long =
+            "perspective-ewa --lowpass 0 --pixel-filter none --alpha mask --edges nearest --shading color";
+        let found = plot("x", "y", &["sprites", long, "confetti"]);
+        let rows: Vec<_> = found.iter().map(|(text, ..)| text.as_str()).collect();
+        let start = rows.iter().position(|text| text.starts_with("perspective-ewa")).unwrap();
+        let whole = rows[start..].iter().take_while(|text| **text != "confetti").copied().collect::<Vec<_>>();
+        assert!(whole.len() > 1 && whole.join(" ") == long, "{rows:?}");
+    }
+}

@@ -53,6 +53,10 @@ pub enum Kind {
     Band,
     /// Rings around markers of other lines.
     Ring,
+    /// Pairs of points, which are the ends of horizontal intervals: thin lines with caps.
+    Whiskers,
+    /// Crosses behind markers of other lines.
+    Crosses,
 }
 
 impl Style {
