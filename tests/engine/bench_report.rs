@@ -278,6 +278,15 @@ fn the_low_pass_of_splats_is_compared_with_what_is_drawn_without_options() {
     assert!(section(&results).contains("What is drawn without options was not measured."));
 }
 
+#[test]
+fn printed_tables_are_whole() {
+    let page = page(&plausible(), CODE);
+    let print = page.split("@media print{").nth(1).unwrap().split("</style>").next().unwrap();
+    for rule in [".scroll{overflow:visible}", "white-space:normal", "font-size:"] {
+        assert!(print.contains(rule), "{rule}: {print}");
+    }
+}
+
 /// The time-error plot of these runs of a scene, as SVG.
 fn time_error(runs: Vec<Run>) -> String {
     let mut results = plausible();
