@@ -1,9 +1,10 @@
 //! Time limit of a session: in which order plans are measured, and which are left out.
 //!
-//! Without a limit, plans keep their order. With one, each experiment of each scene begins with what takes the least time, and they take turns:
-//! the largest numbers of points and pixels are left out first. Exact pictures are traced by fewer rays, and fewer frames are timed.
+//! Without a limit, plans keep their order. With one, each experiment of each scene begins with what takes the least time, and they take turns,
+//! with pictures by a few methods at a time, the default one first: the largest numbers of points and pixels are left out first, and every scene
+//! has some runs. Exact pictures are traced by fewer rays, and fewer frames are timed.
 
-use super::plan::Plan;
+use super::plan::{Measurements, Plan};
 use super::record::Missing;
 use super::stopwatch::Effort;
 use super::suites::Suite;
@@ -42,7 +43,7 @@ pub fn groups(plans: Vec<Plan>, is_limited: bool) -> Vec<Group> {
         return groups;
     }
     let mut series: Vec<Vec<Group>> = Vec::new();
-    for group in groups {
+    for group in groups.iter().flat_map(|group| cut(group)) {
         match series.iter_mut().find(|known| is_of_series(&known[0], &group)) {
             Some(known) => known.push(group),
             None => series.push(vec![group]),
@@ -51,6 +52,18 @@ pub fn groups(plans: Vec<Plan>, is_limited: bool) -> Vec<Group> {
     series.iter_mut().for_each(|groups| groups.sort_by_key(work));
     let turns = series.iter().map(Vec::len).max().unwrap_or_default();
     (0..turns).flat_map(|turn| series.iter().filter_map(move |groups| groups.get(turn).cloned())).collect()
+}
+
+/// Most plans of a group whose pictures are compared, if time is limited.
+const FEW: usize = 5;
+
+/// Cuts a group by shading, and into few plans; one of times alone remains whole, so that all its frames take turns.
+fn cut(group: &[Plan]) -> Vec<Group> {
+    if group.iter().all(|plan| plan.measurements == Measurements::TIME) {
+        return vec![group.to_vec()];
+    }
+    let shadings = group.chunk_by(|a, b| a.settings.shading == b.settings.shading);
+    shadings.flat_map(|plans| plans.chunks(FEW)).map(<[Plan]>::to_vec).collect()
 }
 
 /// Whether both are of the same experiment and scene.
@@ -111,7 +124,9 @@ pub fn missing(plans: &[Plan]) -> Option<Missing> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bench::record::Experiment;
     use crate::bench::suites::UserInputs;
+    use std::collections::HashSet;
 
     #[test]
     fn a_limit_leaves_out_the_largest() {
@@ -128,6 +143,32 @@ mod tests {
         let last: Vec<_> = limited[limited.len() - 2..].iter().map(|group| group[0].clone()).collect();
         assert!(last.iter().any(|plan| plan.points == 10_000_000), "{last:?}");
         assert!(last.iter().any(|plan| plan.experiment.name() == "scaling-overlap"), "{last:?}");
+    }
+
+    #[test]
+    fn a_limit_begins_with_some_runs_of_every_scene() {
+        let plans = Suite::Full.plans(&UserInputs::default());
+        let scenes: HashSet<_> = plans.iter().map(|plan| plan.scene.clone()).collect();
+        let limited = groups(plans.clone(), true);
+        let budget = |group: &&Group| group[0].experiment == Experiment::Budget;
+        let first: Vec<_> = limited.iter().take_while(budget).collect();
+        let of_first: HashSet<_> = first.iter().map(|group| group[0].scene.clone()).collect();
+        assert_eq!(
+            (first.len(), of_first.len()),
+            (scenes.len() - 1, scenes.len() - 1),
+            "one of aliasing alone"
+        );
+        for group in first {
+            assert!(
+                group.len() <= FEW && group[0].implementation().label() == "perspective-ewa",
+                "{}",
+                group.len()
+            );
+        }
+        // None is lost, and times alone are of whole groups.
+        assert_eq!(limited.concat().len(), plans.len());
+        let scaling = groups(Suite::Scaling.plans(&UserInputs::default()), true);
+        assert!(scaling.iter().any(|group| group.len() > FEW));
     }
 
     #[test]
