@@ -1,4 +1,4 @@
-// Composite: blends the picture over the target of a host and writes its depth (src/embed/mod.rs).
+// Composite: blends the picture over the target of a host and writes its depth where most of a pixel is covered (src/embed/composite.rs).
 #version 450
 #pragma variant NORMALS FRAGMENT
 #pragma variant IDS FRAGMENT
@@ -76,7 +76,7 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy) - composite.origin;
     vec4 colour = texelFetch(picture_image, pixel, 0);
     // Some devices go on after a discard: without the condition they would search for a surface at every pixel beside the object.
-    bool is_covered = colour.a != 0.0;
+    bool is_covered = is_drawn(colour.a);
     if (!is_covered) discard;
     out_image = over_host(colour);
     pixel = surface_pixel(pixel, is_covered);

@@ -74,7 +74,8 @@ void main() {
     vec4 s1 = SUM_DEPTH || WIDE_SUMS1 ? subpassLoad(sums1_input) : vec4(0.0);
     bool visible = VISIBLE_BY_SUMS ? s0.x > 0.0 : subpassLoad(visibility_input).r > 0.0;
     float alpha = alpha_of(texel.y * uint(frame.viewport.x) + texel.x);
-    Pixel pixel = normalize_pixel(centre, visible, alpha, s0, s1);
+    // Pixels of the other draw are not shaded.
+    Pixel pixel = normalize_pixel(centre, visible && is_drawn(alpha), alpha, s0, s1);
     if (pixel.image.a == 0.0) discard;
     out_image = over_host(pixel.image);
     out_normal = vec4(pixel.normal, 1.0);

@@ -245,7 +245,7 @@ pub static COMPOSITE_FRAGMENT: Module = Module {
     name: "composite_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("composite_fragment.spv"),
-    constants: &[0, 40, 41],
+    constants: &[0, 40, 41, 44],
     resources: &[(&resource::PICTURE_IMAGE, false), (&resource::DEPTH_IMAGE, false)],
     push: size_of::<layout::Composite>() as u32,
 };
@@ -255,7 +255,7 @@ pub static COMPOSITE_NORMALS_FRAGMENT: Module = Module {
     name: "composite_normals_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("composite_normals_fragment.spv"),
-    constants: &[0, 40, 41],
+    constants: &[0, 40, 41, 44],
     resources: &[(&resource::PICTURE_IMAGE, false), (&resource::NORMAL_IMAGE, false), (&resource::DEPTH_IMAGE, false)],
     push: size_of::<layout::Composite>() as u32,
 };
@@ -265,7 +265,7 @@ pub static COMPOSITE_IDS_FRAGMENT: Module = Module {
     name: "composite_ids_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("composite_ids_fragment.spv"),
-    constants: &[0, 40, 41],
+    constants: &[0, 40, 41, 44],
     resources: &[(&resource::PICTURE_IMAGE, false), (&resource::DEPTH_IMAGE, false), (&resource::ID_IMAGE, false)],
     push: size_of::<layout::Composite>() as u32,
 };
@@ -275,7 +275,7 @@ pub static COMPOSITE_NORMALS_IDS_FRAGMENT: Module = Module {
     name: "composite_normals_ids_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("composite_normals_ids_fragment.spv"),
-    constants: &[0, 40, 41],
+    constants: &[0, 40, 41, 44],
     resources: &[(&resource::PICTURE_IMAGE, false), (&resource::NORMAL_IMAGE, false), (&resource::DEPTH_IMAGE, false), (&resource::ID_IMAGE, false)],
     push: size_of::<layout::Composite>() as u32,
 };
@@ -635,7 +635,7 @@ pub static NORMALIZE_SUBPASS_FRAGMENT: Module = Module {
     name: "normalize_subpass_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_subpass_fragment.spv"),
-    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42, 76, 79],
+    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42, 44, 76, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY_INPUT, false), (&resource::SUMS0_INPUT, false), (&resource::SUMS1_INPUT, false)],
     push: size_of::<layout::Subpass>() as u32,
 };
@@ -645,7 +645,7 @@ pub static NORMALIZE_SUBPASS_COVERAGE_FRAGMENT: Module = Module {
     name: "normalize_subpass_coverage_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_subpass_coverage_fragment.spv"),
-    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42, 76, 79],
+    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42, 44, 76, 79],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::COVERAGE, false), (&resource::VISIBILITY_INPUT, false), (&resource::SUMS0_INPUT, false), (&resource::SUMS1_INPUT, false)],
     push: size_of::<layout::Subpass>() as u32,
 };
@@ -1050,6 +1050,8 @@ pub mod constant {
     pub const CURVATURES: u32 = 70;
     /// `DISTANT`, first in `shaders-glsl/ambient.glsl`.
     pub const DISTANT: u32 = 79;
+    /// `DRAWN_ALPHA`, first in `shaders-glsl/composite.glsl`.
+    pub const DRAWN_ALPHA: u32 = 44;
     /// `EDL`, first in `shaders-glsl/ambient.glsl`.
     pub const EDL: u32 = 77;
     /// `ELLIPSES`, first in `shaders-glsl/attribute.glsl`.

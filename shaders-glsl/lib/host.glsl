@@ -3,6 +3,15 @@
 layout(constant_id = 40) const bool HOST_DEPTH = false; // the host has a depth attachment
 layout(constant_id = 41) const bool ENCODE = false;     // the shader encodes sRGB: the host's format does not
 
+// Pixels that the draw covers: all with a surface; those of α ≥ ½, which write depth, normals and ids; or the others, which only blend. Where
+// most of a pixel shows the surface behind, that is the one whose depth later draws need.
+layout(constant_id = 44) const uint DRAWN_ALPHA = 0;
+const uint ANY_ALPHA = 0, MOST_COVERED = 1, LEAST_COVERED = 2;
+
+bool is_drawn(float alpha) {
+    return alpha > 0.0 && (DRAWN_ALPHA == ANY_ALPHA || (alpha >= 0.5) == (DRAWN_ALPHA == MOST_COVERED));
+}
+
 vec3 linear_to_srgb(vec3 c) {
     return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308)));
 }

@@ -1,12 +1,14 @@
 //! Composite pass: draws the picture over a host's target with a depth test (`composite.glsl`).
+//!
+//! Pixels of α < ½ only blend: a second draw writes nothing but their colours.
 
+use super::drawn_alpha::DrawnAlpha;
 use crate::error::Result;
 use crate::frame::resource::Resource;
 use crate::frame::targets::RenderTargets;
 use crate::vk::shaders::{self, constant, layout, resource};
 use crate::vk::{
-    Access, Binding, Code, Constants, DepthTest, DescriptorSet, Device, DrawPipeline, Draws, SetLayout, Use,
-    Within,
+    Access, Binding, Code, Constants, DescriptorSet, Device, DrawPipeline, Draws, SetLayout, Use, Within,
 };
 use std::sync::Arc;
 
@@ -25,15 +27,23 @@ pub struct CompositeKind {
     pub reversed: Option<bool>,
     /// Whether the shader encodes sRGB.
     pub encode: bool,
+    /// Whether α is coverage.
+    pub coverage: bool,
 }
 
-/// The composite pass: a draw inside a pass of the host.
+/// The composite pass: draws inside a pass of the host.
 pub struct Composite {
     kind: CompositeKind,
-    pipeline: DrawPipeline,
+    pipelines: Vec<DrawPipeline>,
 }
 
 impl CompositeKind {
+    /// The draws, by the α of their pixels.
+    fn draws(&self) -> &'static [DrawnAlpha] {
+        let more = self.reversed.is_some() || self.normal.is_some() || self.id.is_some();
+        DrawnAlpha::of_frame(more, self.coverage)
+    }
+
     /// Resources of a frame's targets that the shader reads, the `picture` among them.
     fn resources(&self, picture: Resource) -> Vec<(&'static shaders::Resource, Resource)> {
         let normal = self.normal.map(|_| (&resource::NORMAL_IMAGE, Resource::Normal));
@@ -56,15 +66,20 @@ impl Composite {
             (Some(_), Some(_)) => &shaders::COMPOSITE_NORMALS_IDS_FRAGMENT,
         };
         let places = [Some(kind.picture), kind.normal, kind.id];
-        let fragment = Code::from(fragment).at_locations(places.map(Option::unwrap_or_default));
-        let code = [Code::from(&shaders::COMPOSITE_VERTEX), fragment];
+        let places = places.map(Option::unwrap_or_default);
         let constants = Constants::default()
             .with(constant::PERSPECTIVE, kind.perspective)
             .with(constant::HOST_DEPTH, kind.reversed.is_some())
             .with(constant::ENCODE, kind.encode);
-        let depth = kind.reversed.map_or(DepthTest::None, |reversed| DepthTest::Host { reversed });
-        let pipeline = DrawPipeline::of_host(device, &[&layout], code, &constants, within, depth)?;
-        Ok(Self { kind, pipeline })
+        let pipeline = |drawn: &DrawnAlpha| {
+            let code = [Code::from(&shaders::COMPOSITE_VERTEX), Code::from(fragment).at_locations(places)];
+            let constants = drawn.add_to(constants.clone());
+            let within = drawn.within(within, kind.picture);
+            let depth = drawn.depth_test(kind.reversed);
+            DrawPipeline::of_host(device, &[&layout], code, &constants, &within, depth)
+        };
+        let pipelines = kind.draws().iter().map(pipeline).collect::<Result<_>>()?;
+        Ok(Self { kind, pipelines })
     }
 
     /// Descriptor set of a picture, which must outlive it.
@@ -88,6 +103,8 @@ impl Composite {
 
     /// Draws a picture to the host's colours and depth.
     pub fn draw(&self, draws: &mut Draws<'_>, view: &DescriptorSet, place: &layout::Composite) {
-        draws.draw(&self.pipeline, &[view], place, 3);
+        for pipeline in &self.pipelines {
+            draws.draw(pipeline, &[view], place, 3);
+        }
     }
 }

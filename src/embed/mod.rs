@@ -87,6 +87,7 @@ mod buffers;
 mod composite;
 mod deferred_destruction;
 mod depth_shading;
+mod drawn_alpha;
 mod formats;
 pub mod native;
 #[cfg(feature = "window")]
@@ -367,6 +368,7 @@ impl Renderer {
         // SAFETY: the caller of `new` guarantees that the target is correct.
         let made = Arc::new(unsafe { self.target.composite(&self.device, kind)? });
         self.composites.push(made.clone());
+            coverage: variant.coverage,
         Ok(made)
     }
 }

@@ -43,8 +43,8 @@ pub struct Target {
     pub picture: u32,
     /// Location of unit normals, world space, if any, below 4.
     pub normal: Option<u32>,
-    /// Location of point ids as of [`Picture::id`](crate::Picture::id), of format `R32_UINT`, if any, below 4. Pixels without a surface, or
-    /// with the host's in front, keep their contents: clear it to [`Picture::NOBODY`](crate::Picture::NOBODY). Methods without point ids
+    /// Location of point ids as of [`Picture::id`](crate::Picture::id), of format `R32_UINT`, if any, below 4. Pixels of α < ½, or
+    /// with the host's surface in front, keep their contents: clear it to [`Picture::NOBODY`](crate::Picture::NOBODY). Methods without point ids
     /// are then rejected.
     pub id: Option<u32>,
     /// Whether the shader encodes sRGB, for a UNORM format that is displayed as it is. sRGB formats encode in hardware.

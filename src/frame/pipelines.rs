@@ -24,7 +24,7 @@ pub struct Pipelines {
 
 /// Subpasses of a host in which raster passes are drawn.
 pub struct Host {
-    /// The passes with their subpasses.
+    /// The passes with their subpasses. A pass may have several draws.
     pub draws: Vec<HostDraw>,
     /// Resources of descriptor set 1, without coverage.
     pub resources: Vec<&'static shaders::Resource>,
@@ -39,6 +39,8 @@ pub struct HostDraw {
     pub constants: Constants,
     /// Replacement of the fragment shader.
     pub fragment: Option<&'static shaders::Module>,
+    /// Only frames of which α is coverage have it.
+    pub is_of_coverage: bool,
 }
 
 /// Identity of a pass, as a map key.
@@ -149,44 +151,49 @@ impl Pipelines {
             let layouts = self.layouts(device, pass, &program, variant, first_set(&program))?;
             let sets: Vec<&SetLayout> = layouts.iter().map(Arc::as_ref).collect();
             let constants = constants.clone().and(&program.constants);
-            let pipeline = match program.stages {
-                Stages::Compute(module) => Pipeline::Compute(ComputePipeline::new(
+            let created = match program.stages {
+                Stages::Compute(module) => vec![Pipeline::Compute(ComputePipeline::new(
                     device,
                     &sets,
                     module,
                     &constants,
                     program.is_subgroup,
-                )?),
-                Stages::Draw(modules) => Pipeline::Draw(match (&render_pass, &pass.commands) {
+                )?)],
+                Stages::Draw(modules) => match (&render_pass, &pass.commands) {
                     (Some(into), Commands::Draws(targets)) => {
                         let (topology, depth, blend) = (targets.topology, targets.test, targets.blend);
                         let state = DrawState { topology, depth, blend };
-                        DrawPipeline::new(device, &sets, modules, &constants, into, state)?
+                        let pipeline = DrawPipeline::new(device, &sets, modules, &constants, into, state)?;
+                        vec![Pipeline::Draw(pipeline)]
                     }
-                    _ => match self.host_pipeline(device, pass, &sets, modules, &constants)? {
-                        Some(pipeline) => pipeline,
-                        None => continue,
-                    },
-                }),
+                    _ => self.host_pipelines(device, (pass, variant), &sets, modules, &constants)?,
+                },
             };
-            pipelines.push((program.domain, pipeline));
+            pipelines.extend(created.into_iter().map(|pipeline| (program.domain, pipeline)));
         }
         Ok(Arc::new(pipelines))
     }
 
-    fn host_pipeline(
+    /// The pipelines of a pass's draws in a subpass of the host.
+    fn host_pipelines(
         &self,
         device: &Arc<Device>,
-        pass: &'static Pass,
+        (pass, variant): (&'static Pass, &Variant),
         sets: &[&SetLayout],
         [vertex, fragment]: [&'static shaders::Module; 2],
         constants: &Constants,
-    ) -> Result<Option<DrawPipeline>> {
-        let mut draws = self.host.iter().flat_map(|host| &host.draws);
-        let Some(draw) = draws.find(|draw| std::ptr::eq(draw.pass, pass)) else { return Ok(None) };
-        let code = [vertex, draw.fragment.unwrap_or(fragment)].map(Code::from);
-        let constants = constants.clone().and(&draw.constants);
-        DrawPipeline::of_host(device, sets, code, &constants, &draw.within, draw.depth).map(Some)
+    ) -> Result<Vec<Pipeline>> {
+        let draws = self.host.iter().flat_map(|host| &host.draws);
+        let drawn = |draw: &&HostDraw| {
+            std::ptr::eq(draw.pass, pass) && (variant.coverage || !draw.is_of_coverage)
+        };
+        let pipeline = |draw: &HostDraw| {
+            let code = [vertex, draw.fragment.unwrap_or(fragment)].map(Code::from);
+            let constants = constants.clone().and(&draw.constants);
+            let made = DrawPipeline::of_host(device, sets, code, &constants, &draw.within, draw.depth);
+            made.map(Pipeline::Draw)
+        };
+        draws.filter(drawn).map(pipeline).collect()
     }
 
     /// Layouts of descriptor sets 0, 1, … of a program: frame or scene; targets; counts, or the pyramid that is written, or the final one

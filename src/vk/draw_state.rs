@@ -27,10 +27,12 @@ pub enum DepthTest {
     Marking,
     /// Like [`DepthTest::NotBehind`], only where the stencil is marked.
     Marked,
-    /// Test and write against the host's depth: fragments that are not behind it pass.
+    /// Test against the host's depth: fragments that are not behind it pass.
     Host {
         /// Whether greater depth is nearer.
         reversed: bool,
+        /// Whether they are written.
+        write: bool,
     },
 }
 
@@ -92,6 +94,12 @@ impl Within {
         Self { pass: PassKey::Rendering(colours.to_vec(), depth, stencil), blends: blends.to_vec(), samples }
     }
 
+    /// The same with all colour targets masked but that at `location`.
+    pub fn masked_but(&self, location: usize) -> Self {
+        let kept = |(i, blend): (usize, &Option<Blend>)| blend.filter(|_| i == location);
+        Self { blends: self.blends.iter().enumerate().map(kept).collect(), ..self.clone() }
+    }
+
     /// The render pass and subpass; null for dynamic rendering.
     pub(super) fn pass(&self) -> (vk::RenderPass, u32) {
         match self.pass {
@@ -113,19 +121,25 @@ impl Topology {
 impl DepthTest {
     pub(super) fn info(self) -> vk::PipelineDepthStencilStateCreateInfo<'static> {
         let compare = match self {
-            Self::NotBehind | Self::Marked | Self::Host { reversed: true } => vk::CompareOp::GREATER_OR_EQUAL,
-            Self::Host { reversed: false } => vk::CompareOp::LESS_OR_EQUAL,
+            Self::NotBehind | Self::Marked | Self::Host { reversed: true, .. } => {
+                vk::CompareOp::GREATER_OR_EQUAL
+            }
+            Self::Host { reversed: false, .. } => vk::CompareOp::LESS_OR_EQUAL,
             Self::None | Self::Nearest | Self::Marking => vk::CompareOp::GREATER,
             Self::Always => vk::CompareOp::ALWAYS,
         };
         let stencil = self.stencil();
         vk::PipelineDepthStencilStateCreateInfo::default()
             .depth_test_enable(self != Self::None)
-            .depth_write_enable(!matches!(self, Self::None | Self::NotBehind | Self::Marked))
+            .depth_write_enable(self.writes())
             .depth_compare_op(compare)
             .stencil_test_enable(stencil.is_some())
             .front(stencil.unwrap_or_default())
             .back(stencil.unwrap_or_default())
+    }
+
+    fn writes(self) -> bool {
+        !matches!(self, Self::None | Self::NotBehind | Self::Marked | Self::Host { write: false, .. })
     }
 
     fn stencil(self) -> Option<vk::StencilOpState> {

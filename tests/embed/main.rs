@@ -23,6 +23,7 @@ mod native_depth;
 mod native_live;
 mod native_refused;
 mod native_rig;
+mod outlines;
 mod pipelines;
 mod raw_buffer;
 mod reports;

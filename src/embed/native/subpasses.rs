@@ -1,6 +1,7 @@
 //! Passes in the subpasses of a plan.
 
 use super::plan::{Plan, Step};
+use crate::embed::drawn_alpha::DrawnAlpha;
 use crate::frame::pass::Pass;
 use crate::frame::passes::{attribute, nearest, normalize, seed, visibility};
 use crate::frame::pipelines::{Host, HostDraw};
@@ -26,21 +27,27 @@ impl Step {
 /// # Safety
 /// `pass` is as `plan` describes it, and outlives all pipelines that are created for it.
 pub(super) unsafe fn host(plan: &Plan, pass: vk::RenderPass) -> Host {
-    let draw = |(subpass, step)| {
+    let draws = |(subpass, step)| {
         let one = vk::SampleCountFlags::TYPE_1;
         let samples = if step == Step::Normalize { plan.host.samples } else { one };
-        // SAFETY: by the caller.
-        let within = unsafe { Within::subpass((pass, subpass), &blends(plan, step), samples) };
         let multisampled = step == Step::Seed && plan.host.samples != one;
-        HostDraw {
+        drawn(plan, step).iter().map(move |drawn| HostDraw {
             pass: step.pass(),
-            within,
-            depth: depth_test(plan, step),
-            constants: constants(plan, step),
+            // SAFETY: by the caller.
+            within: unsafe { Within::subpass((pass, subpass), &blends(plan, step, *drawn), samples) },
+            depth: depth_test(plan, step, *drawn),
+            constants: constants(plan, step, *drawn),
             fragment: multisampled.then_some(&SEED_MULTISAMPLED_FRAGMENT),
-        }
+            is_of_coverage: *drawn == DrawnAlpha::LeastCovered,
+        })
     };
-    Host { draws: plan.numbered().map(draw).collect(), resources: inputs(plan) }
+    Host { draws: plan.numbered().flat_map(draws).collect(), resources: inputs(plan) }
+}
+
+/// The draws of a step: the last writes to the host's attachments.
+fn drawn(plan: &Plan, step: Step) -> &'static [DrawnAlpha] {
+    let more = plan.host.reversed.is_some() || plan.host.normal.is_some();
+    DrawnAlpha::of_frame(step == Step::Normalize && more, true)
 }
 
 /// Input attachments and buffers of the shaders.
@@ -51,34 +58,35 @@ pub(super) fn inputs(plan: &Plan) -> Vec<&'static shaders::Resource> {
     [visibility, Some(&resource::SUMS0_INPUT), sums1, depth].into_iter().flatten().collect()
 }
 
-fn blends(plan: &Plan, step: Step) -> Vec<Option<Blend>> {
+fn blends(plan: &Plan, step: Step, drawn: DrawnAlpha) -> Vec<Option<Blend>> {
     match step {
         Step::Seed | Step::Visibility => Vec::new(),
         Step::Attribute => vec![Some(Blend::Add); 2],
         Step::Nearest => vec![Some(Blend::Replace); 2],
         // Without a normal attachment, all blending is like the picture's: independent blending needs a feature.
-        Step::Normalize if plan.host.normal.is_some() => vec![Some(Blend::Over), Some(Blend::Replace)],
+        Step::Normalize if plan.host.normal.is_some() => {
+            vec![Some(Blend::Over), (drawn != DrawnAlpha::LeastCovered).then_some(Blend::Replace)]
+        }
         Step::Normalize => vec![Some(Blend::Over); 2],
     }
 }
 
-fn depth_test(plan: &Plan, step: Step) -> DepthTest {
+fn depth_test(plan: &Plan, step: Step, drawn: DrawnAlpha) -> DepthTest {
     match step {
         Step::Seed => DepthTest::Always,
         Step::Visibility if plan.marks() => DepthTest::Marking,
         Step::Visibility | Step::Nearest => DepthTest::Nearest,
         Step::Attribute if plan.marks() => DepthTest::Marked,
         Step::Attribute => DepthTest::NotBehind,
-        Step::Normalize => {
-            plan.host.reversed.map_or(DepthTest::None, |reversed| DepthTest::Host { reversed })
-        }
+        Step::Normalize => drawn.depth_test(plan.host.reversed),
     }
 }
 
-fn constants(plan: &Plan, step: Step) -> Constants {
+fn constants(plan: &Plan, step: Step, drawn: DrawnAlpha) -> Constants {
     match step {
         Step::Seed => Constants::default().with(constant::HOST_SAMPLES, plan.host.samples.as_raw()),
-        Step::Normalize => Constants::default()
+        Step::Normalize => drawn
+            .add_to(Constants::default())
             .with(constant::VISIBLE_BY_SUMS, plan.visible_by_sums())
             .with(constant::HOST_DEPTH, plan.host.reversed.is_some())
             .with(constant::ENCODE, plan.host.encode),

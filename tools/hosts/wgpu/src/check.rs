@@ -8,6 +8,7 @@ use crate::gpu::{Gpu, instance};
 use crate::scene::{SIZE, camera, sphere};
 use glam::DVec3;
 use surfel::geometry::Camera;
+use surfel::settings::Alpha;
 use surfel::settings::methods::Method;
 use surfel::vk::{Device, DeviceOptions};
 use surfel::{Outputs, Picture, RenderOptions, Renderer, Scene, Settings};
@@ -30,7 +31,8 @@ pub fn all() -> Result<()> {
     let device = Device::open(&DeviceOptions { select: Some(name), ..Default::default() })?;
     for method in METHODS {
         let settings = Method::named(method).ok_or("no such method")?.settings();
-        let settings = Settings { background: None, ..settings };
+        // Soft outlines blend with the ring, and have depth in part only.
+        let settings = Settings { background: None, alpha: Alpha::Mask, ..settings };
         let own = own(&device, &settings)?;
         for samples in [1, 4] {
             let frame = Frame::new(&gpu, SIZE, samples);
