@@ -9,8 +9,10 @@ use ash::vk;
 pub(super) enum Purpose {
     /// Blended colours.
     Blended,
-    /// Colours or normals without blending.
+    /// Colours without blending.
     Replaced,
+    /// Normals without blending.
+    Normals,
     /// Point ids without blending.
     Ids,
     /// Colours of the host only.
@@ -37,7 +39,7 @@ pub(super) fn check(
         Purpose::Blended => {
             (Can::COLOR_ATTACHMENT | Can::COLOR_ATTACHMENT_BLEND, vk::ImageUsageFlags::COLOR_ATTACHMENT)
         }
-        Purpose::Replaced | Purpose::Ids | Purpose::Other => {
+        Purpose::Replaced | Purpose::Normals | Purpose::Ids | Purpose::Other => {
             (Can::COLOR_ATTACHMENT, vk::ImageUsageFlags::COLOR_ATTACHMENT)
         }
         Purpose::Depth | Purpose::Stencil => {
@@ -50,6 +52,7 @@ pub(super) fn check(
     };
     let fits = match purpose {
         Purpose::Blended | Purpose::Replaced => !is_integer(format),
+        Purpose::Normals => is_signed(format),
         Purpose::Ids => format == vk::Format::R32_UINT,
         Purpose::Other => true,
         Purpose::Depth | Purpose::SampledDepth => has_depth(format),
@@ -57,6 +60,13 @@ pub(super) fn check(
     };
     if !fits && purpose == Purpose::Ids {
         return Err(format!("{what} need R32_UINT, but the format is {format:?}").into());
+    }
+    if !fits && purpose == Purpose::Normals {
+        return Err(format!(
+            "{what} have negative components, which {format:?} cannot store: give a signed format, such as R16G16B16A16_SFLOAT or \
+             R8G8B8A8_SNORM"
+        )
+        .into());
     }
     if !fits || !device.format_features(format).contains(needed) {
         return Err(match purpose {
@@ -102,6 +112,10 @@ fn sample_counts(samples: vk::SampleCountFlags) -> String {
 
 pub(super) fn is_integer(format: vk::Format) -> bool {
     ["UINT", "SINT"].iter().any(|kind| format!("{format:?}").contains(kind))
+}
+
+fn is_signed(format: vk::Format) -> bool {
+    ["SNORM", "SFLOAT"].iter().any(|kind| format!("{format:?}").contains(kind))
 }
 
 pub(super) fn is_srgb(format: vk::Format) -> bool {

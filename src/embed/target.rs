@@ -41,7 +41,7 @@ pub struct Target {
     pub samples: vk::SampleCountFlags,
     /// Location of the picture, below 4: premultiplied linear RGB, blended over the contents.
     pub picture: u32,
-    /// Location of unit normals, world space, if any, below 4.
+    /// Location of unit normals, world space, if any, below 4, of a signed format. Written where α ≥ ½.
     pub normal: Option<u32>,
     /// Location of point ids as of [`Picture::id`](crate::Picture::id), of format `R32_UINT`, if any, below 4. Pixels of α < ½, or
     /// with the host's surface in front, keep their contents: clear it to [`Picture::NOBODY`](crate::Picture::NOBODY). Methods without point ids
@@ -88,7 +88,7 @@ impl Target {
         }
         let wanted = [
             ("the picture", Some(self.picture), Purpose::Blended),
-            ("normals", self.normal, Purpose::Replaced),
+            ("normals", self.normal, Purpose::Normals),
             ("point ids", self.id, Purpose::Ids),
         ];
         for [a, b] in [[0, 1], [0, 2], [1, 2]] {

@@ -353,7 +353,7 @@ fn what_cannot_be_served_is_refused_and_says_why() {
     let mut fixture = Fixture::new(&host, kind, SIZE, None, &surfels());
     let target = fixture.frame.target();
     type Change = fn(&mut embed::Target);
-    let changes: [(Change, &str); 17] = [
+    let changes: [(Change, &str); 18] = [
         (|t| t.picture = 1, "location of the picture is 1 of 1 colour attachments"),
         (|t| t.normal = Some(0), "both the picture and normals"),
         (|t| t.id = Some(0), "both the picture and point ids"),
@@ -368,6 +368,10 @@ fn what_cannot_be_served_is_refused_and_says_why() {
         (
             |t| t.colours[0] = vk::Format::R32G32B32A32_UINT,
             "cannot draw the picture at location 0 to R32G32B32A32_UINT",
+        ),
+        (
+            |t| (t.colours, t.normal) = (vec![FLOATS, vk::Format::R8G8B8A8_UNORM], Some(1)),
+            "normals at location 1 have negative components, which R8G8B8A8_UNORM cannot store",
         ),
         (|t| t.colours.push(FLOATS), "independentBlend"),
         (|t| t.depth = Some(FLOATS), "cannot draw depth to R32G32B32A32_SFLOAT"),

@@ -136,7 +136,9 @@ fn render_passes_that_cannot_be_served_are_refused_and_say_why() {
     );
     let encoded = coloured(vk::Format::R8G8B8A8_SRGB, FOUR);
     assert_refused(plan(&encoded, |pass| pass.encode = true, &[&settings]), "encodes sRGB itself");
-    assert_refused(plan(&encoded, |pass| pass.normal = Some(3), &[&settings]), "independentBlend");
+    assert_refused(plan(&encoded, |pass| pass.normal = Some(3), &[&settings]), "give a signed format");
+    let signed = coloured(vk::Format::R16G16B16A16_SFLOAT, FOUR);
+    assert_refused(plan(&signed, |pass| pass.normal = Some(3), &[&settings]), "independentBlend");
     let same: fn(&mut HostRenderPass<'_>) = |_| ();
     assert_refused(plan(&attachments, same, &[&pulled]), "inside a render pass");
     assert_refused(plan(&attachments, same, &[&settings, &nearest]), "make a plan for each");

@@ -19,7 +19,7 @@ pub struct HostRenderPass<'a> {
     pub picture: u32,
     /// The single-sample attachment that the engine's last subpass resolves the picture to, if any.
     pub resolve: Option<u32>,
-    /// The attachment of unit normals, world space, if any.
+    /// The attachment of unit normals, world space, if any, of a signed format. Written where α ≥ ½.
     pub normal: Option<u32>,
     /// The host's depth. Without depth, the picture covers the contents.
     pub depth: Option<Depth>,
@@ -57,7 +57,7 @@ impl HostRenderPass<'_> {
         let wanted = [
             ("the picture", Some(self.picture), Purpose::Blended),
             ("the resolved picture", self.resolve, Purpose::Replaced),
-            ("normals", self.normal, Purpose::Replaced),
+            ("normals", self.normal, Purpose::Normals),
             ("depth", depth, Purpose::Depth),
         ];
         for (i, (what, attachment, purpose)) in wanted.into_iter().enumerate() {
