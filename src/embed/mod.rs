@@ -217,11 +217,14 @@ impl Renderer {
     /// Records a frame of one scene, or of several instances, up to its picture, which [`Renderer::draw`] then draws. The picture has the
     /// size of the viewport; pixels without a surface are transparent, whatever `settings.background` is.
     ///
+    /// Binds pipelines of both kinds: afterwards the host binds its compute state again, too, as after [`Renderer::draw`].
+    ///
     /// After an error nothing is recorded, and there is no picture to draw.
     ///
     /// # Safety
-    /// `cmd` is of the device and its queue family, is recording outside a render pass, and is submitted to the same queue as earlier
-    /// commands, after them. [`Options::frames_in_flight`] is observed.
+    /// `cmd` is a primary command buffer of the device and its queue family, as frames on the raster path begin render passes of their own. It
+    /// is recording outside a render pass, and is submitted to the same queue as earlier commands, after them.
+    /// [`Options::frames_in_flight`] is observed.
     pub unsafe fn prepare<'a>(
         &mut self,
         cmd: vk::CommandBuffer,
@@ -250,12 +253,16 @@ impl Renderer {
         Ok(())
     }
 
-    /// Records the draw of the last prepared picture with a depth test and depth write. Sets viewport and scissor, and binds a pipeline and
-    /// descriptor set 0.
+    /// Records the draw of the last prepared picture with a depth test. Pixels of α ≥ ½ write depth, normals and ids; the others, at soft
+    /// outlines, only blend, in a second draw.
+    ///
+    /// Binds a graphics pipeline whose layout and static state are its own. Afterwards the host binds its pipeline and all descriptor sets,
+    /// and sets push constants and all dynamic state, such as viewport and scissor, again. Vertex and index buffers stay bound.
     ///
     /// # Safety
-    /// `cmd` is of the device and recording inside the subpass, or the dynamic rendering, of the target. It is submitted to the same queue
-    /// after the commands that prepared the picture, and before those that prepare the next one.
+    /// `cmd`, primary or secondary, is of the device and recording inside the subpass, or the dynamic rendering, of the target. The viewport of
+    /// the prepared picture lies in the render area. The commands are submitted to the same queue after those that prepared the picture, and
+    /// before those that prepare the next one.
     pub unsafe fn draw(&self, cmd: vk::CommandBuffer) -> Result<()> {
         let (Some(viewed), Some((PreparedDraw { place, area }, pass))) = (&self.viewed, &self.pending) else {
             return Err(Error::Usage(
@@ -361,6 +368,7 @@ impl Renderer {
             id: self.target.id,
             reversed: self.target.depth.map(|_| self.target.reversed),
             encode: self.target.encode,
+            coverage: variant.coverage,
         };
         if let Some(made) = self.composites.iter().find(|made| made.kind() == kind) {
             return Ok(made.clone());
@@ -368,7 +376,6 @@ impl Renderer {
         // SAFETY: the caller of `new` guarantees that the target is correct.
         let made = Arc::new(unsafe { self.target.composite(&self.device, kind)? });
         self.composites.push(made.clone());
-            coverage: variant.coverage,
         Ok(made)
     }
 }

@@ -207,11 +207,12 @@ impl DepthShading {
         Ok(())
     }
 
-    /// Records the draw. Sets viewport and scissor, and binds a pipeline and descriptor set 0.
+    /// Records the draw. The host binds its state again as after [`Renderer::draw`](super::Renderer::draw).
     ///
     /// # Safety
-    /// `cmd` is of the device and recording inside the subpass, or the dynamic rendering, of the target. It is submitted to the same queue
-    /// after the commands that were prepared, and before those that prepare the next frame.
+    /// `cmd` is of the device and recording inside the subpass, or the dynamic rendering, of the target. The viewport of the prepared frame
+    /// lies in the render area. The commands are submitted to the same queue after those that were prepared, and before those that prepare the
+    /// next frame.
     pub unsafe fn draw(&self, cmd: vk::CommandBuffer) -> Result<()> {
         let Some(PreparedDraw { area, pass }) = &self.pending else {
             return Err(Error::Usage(

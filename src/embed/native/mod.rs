@@ -248,15 +248,15 @@ impl Renderer {
         Ok(())
     }
 
-    /// Records the subpasses and advances between them: afterwards the command buffer is in the last one, [`Plan::last`]. Sets viewport and
-    /// scissor, and binds pipelines and descriptor sets 0 and 1.
+    /// Records the subpasses and advances between them: afterwards the command buffer is in the last one, [`Plan::last`]. The host binds its
+    /// state again as after [`embed::Renderer::draw`](super::Renderer::draw).
     ///
     /// After an error nothing is recorded: call [`Renderer::skip`] to advance.
     ///
     /// # Safety
     /// `cmd` is of the device and recording inside the render pass, with a framebuffer of the views that were returned last, in the subpass
-    /// before the plan's first, or in that one if it is the first. It is submitted to the same queue after the commands that prepared the
-    /// frame, and before those that prepare the next one.
+    /// before the plan's first, or in that one if it is the first. The viewport of the prepared frame lies in the render area. The commands
+    /// are submitted to the same queue after those that prepared the frame, and before those that prepare the next one.
     pub unsafe fn draw(&self, cmd: vk::CommandBuffer) -> Result<()> {
         // SAFETY: by the caller.
         unsafe {
