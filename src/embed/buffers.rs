@@ -89,7 +89,9 @@ impl Scene {
     ///
     /// # Safety
     /// The buffers are of `device`, have the given sizes and `STORAGE_BUFFER` usage, are bound to memory, and are owned by the device's
-    /// queue family. They outlive the scene and all its frames. Their contents are written as described above.
+    /// queue family. They outlive the scene and all its frames: a renderer keeps the scenes of its last frame, and others until
+    /// [`frames_in_flight`](super::Options::frames_in_flight) frames without them are prepared, it is
+    /// [finished](super::Renderer::finish), or it is dropped. Their contents are written as described above.
     pub unsafe fn from_buffers(device: &Arc<Device>, buffers: &Buffers) -> Result<Self> {
         buffers.check()?;
         let Buffers { positions, normals, ellipses, colours, capacity, .. } = *buffers;

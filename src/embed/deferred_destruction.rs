@@ -55,6 +55,12 @@ impl DeferredDestruction {
         self.list.extend(resources.into_iter().map(|resource| (frame, resource)));
     }
 
+    /// Destroys all resources and releases the scenes: every frame is over.
+    pub(super) fn finish(&mut self) {
+        self.list.clear();
+        self.scenes.clear();
+    }
+
     /// Begins a frame and destroys resources of frames that are over.
     pub(super) fn advance(&mut self) {
         self.frame += 1;

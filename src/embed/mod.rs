@@ -309,11 +309,15 @@ impl Renderer {
         self.reports.last()
     }
 
-    /// Declares that every frame is over, so that [`Renderer::report`] is that of the last one.
+    /// Declares that every frame is over, so that [`Renderer::report`] is that of the last one. Destroys the resources that later frames
+    /// need not, and releases the scenes: without it, a renderer keeps those of its last frame, and others for
+    /// [`Options::frames_in_flight`] frames.
     ///
     /// # Safety
     /// The GPU has finished every frame that was prepared without an error.
     pub unsafe fn finish(&mut self) -> Result<()> {
+        drop(self.frame.take_deferred());
+        self.deferred.finish();
         self.reports.finish()?;
         self.reports.mark(self.frame.learn());
         Ok(())

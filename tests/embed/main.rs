@@ -9,6 +9,7 @@ mod compare;
 mod composite;
 mod depth_shading;
 mod depth_shading_refused;
+mod finish;
 mod fixture;
 #[path = "../../tools/hosts/host/mod.rs"]
 mod host;

@@ -343,11 +343,14 @@ impl Renderer {
         self.reports.last()
     }
 
-    /// See [`embed::Renderer::finish`](super::Renderer::finish).
+    /// See [`embed::Renderer::finish`](super::Renderer::finish). The last frame cannot be drawn again.
     ///
     /// # Safety
     /// The GPU has finished every frame that was prepared without an error.
     pub unsafe fn finish(&mut self) -> Result<()> {
+        self.pending = None;
+        drop(self.frame.take_deferred());
+        self.deferred.finish();
         self.reports.finish()
     }
 
