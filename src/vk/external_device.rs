@@ -48,8 +48,8 @@ impl Device {
     /// buffers. It never submits, waits, or destroys the host's objects.
     ///
     /// # Errors
-    /// [`Error::NoDevice`] if the device is older than Vulkan 1.1 or the queue family lacks graphics or compute; [`Error::Usage`] if there
-    /// is no such family.
+    /// [`Error::NoDevice`] if the device is older than Vulkan 1.1 or allows fewer than 15 storage buffers per stage, or if the queue family
+    /// lacks graphics or compute; [`Error::Usage`] if there is no such family.
     ///
     /// # Safety
     /// What `external` says of the device is true, and the device outlives what is returned and all that is made on it.
@@ -73,6 +73,7 @@ impl Device {
         // SAFETY: as above.
         let capabilities =
             unsafe { Capabilities::query(instance, physical, queue_family, enabled, &external.limits) };
+        capabilities.check(&description.name)?;
         let dynamic_rendering = external.dynamic_rendering && capabilities.dynamic_rendering;
         let capabilities = Capabilities { dynamic_rendering, ..capabilities };
         let memory = match external.memory {

@@ -1,6 +1,7 @@
 //! Capabilities of a device, and a mask that hides some of them so that tests can run every fallback.
 
 use super::requirements::Abilities;
+use crate::error::{Error, Result};
 use ash::vk;
 
 /// A mask over a device's capabilities. `None` hides nothing.
@@ -98,10 +99,29 @@ pub struct Capabilities {
     pub memory: u64,
 }
 
+/// Storage buffers of a shader stage that some frames need: a scene with all streams, with counts and coverage.
+const STORAGE_BUFFERS: u32 = 15;
+
 /// Largest width and height of a picture: a splat stores its anchor pixel in 15 bits per coordinate (`lib/splat.glsl`).
 const LARGEST_SIDE: u32 = 1 << 15;
 
 impl Capabilities {
+    /// Returns an error if the device of this name has too few storage buffers for all frames.
+    pub(super) fn check(&self, name: &str) -> Result<()> {
+        self.check_storage_buffers(name, STORAGE_BUFFERS)
+    }
+
+    /// Returns an error if a stage cannot have so many storage buffers: Vulkan guarantees only four. Devices that draw have far more.
+    pub(super) fn check_storage_buffers(&self, name: &str, needed: u32) -> Result<()> {
+        let most = self.max_storage_buffers;
+        if needed <= most {
+            return Ok(());
+        }
+        Err(Error::NoDevice(format!(
+            "a shader needs {needed} storage buffers, and {name} allows {most}: choose another device"
+        )))
+    }
+
     /// Capabilities of `physical` with the features `enabled`.
     ///
     /// # Safety

@@ -133,18 +133,12 @@ fn bindings(sets: &Sets<'_>) -> Vec<Vec<SetBinding>> {
     sets.iter().map(|set| set.bindings.clone()).collect()
 }
 
-/// Vulkan guarantees only four storage buffers per stage. Devices that draw have far more; this reports one that does not.
+/// Returns an error if a stage has more storage buffers than the device allows.
 fn check_storage_buffers(device: &Device, sets: &Sets<'_>) -> Result<()> {
-    let most = device.capabilities().max_storage_buffers;
     for stage in [vk::ShaderStageFlags::VERTEX, vk::ShaderStageFlags::FRAGMENT, vk::ShaderStageFlags::COMPUTE]
     {
         let needed: u32 = sets.iter().map(|set| set.storage_buffers(stage)).sum();
-        if needed > most {
-            return Err(Error::NoDevice(format!(
-                "a shader needs {needed} storage buffers, and {} allows {most}: choose another device",
-                device.description().name
-            )));
-        }
+        device.capabilities().check_storage_buffers(&device.description().name, needed)?;
     }
     Ok(())
 }

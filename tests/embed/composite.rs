@@ -404,6 +404,9 @@ fn what_cannot_be_served_is_refused_and_says_why() {
     // SAFETY: nothing is created for a rejected target.
     let refused = unsafe { Renderer::new(&hidden, options) }.err().unwrap().to_string();
     assert!(refused.contains("the feature dynamicRendering"), "{refused}");
+    let few = DeviceLimits { max_storage_buffers: Some(14), ..Default::default() };
+    let refused = host.external_device_within(few, None).err().unwrap().to_string();
+    assert!(refused.contains("needs 15 storage buffers") && refused.contains("allows 14"), "{refused}");
     for frames in [0, u32::MAX] {
         let expected = format!("{frames} frames in flight");
         assert!(make(target.clone(), frames).is_err_and(|error| error.to_string().contains(&expected)));
