@@ -26,7 +26,10 @@ use crate::vk::{Access, Buffer, Device, Recorder, Update};
 use std::any::Any;
 use std::sync::Arc;
 
-/// Frame resources for frames of one size on one device.
+/// Frames that targets of another size may be unused.
+const UNUSED_FRAMES: u32 = 4;
+
+/// Frame resources for frames on one device, of one size at a time.
 pub struct FrameResources {
     // Fields drop in this order: views before their buffers.
     current: Option<VariantResources>,
@@ -34,8 +37,10 @@ pub struct FrameResources {
     reason: Option<RasterizerReason>,
     /// Level of detail of the last frame, px.
     lod: f32,
-    /// Resources of the previous variant: alternating between two, as progressive rendering does, creates nothing.
+    /// Resources of the previous variant or size: alternating between two, as progressive rendering does, creates nothing.
     previous: Option<VariantResources>,
+    /// Frames since they were used.
+    unused_frames: u32,
     scenes: SceneCache,
     /// Per instance of the frame: index of its scene in the cache, and its index among that scene's instances.
     placements: Vec<[usize; 2]>,
@@ -86,6 +91,7 @@ impl FrameResources {
             reason: None,
             lod: 0.0,
             previous: None,
+            unused_frames: 0,
             scenes: SceneCache::default(),
             placements: Vec::new(),
             splats: None,
@@ -153,10 +159,7 @@ impl FrameResources {
 
     /// Sets the size of the next frames, px.
     pub fn resize(&mut self, size: [u32; 2]) {
-        if self.options.size != size {
-            self.options.size = size;
-            self.discard_targets();
-        }
+        self.options.size = size;
     }
 
     /// Discards the targets, such as when a host changes its own.
@@ -392,12 +395,24 @@ impl FrameResources {
         Ok(ranges)
     }
 
+    /// Discards the previous targets if they are of another size than this, and have been unused for some frames, as after a resize.
+    fn discard_unused(&mut self, size: [u32; 2]) {
+        self.unused_frames += 1;
+        let is_old = self.unused_frames > UNUSED_FRAMES;
+        if is_old && self.previous.as_ref().is_some_and(|previous| previous.targets.size != size) {
+            self.disposal.add(self.previous.take());
+        }
+    }
+
     fn make_current(&mut self, scenes: &[Placed<'_>], variant: Variant, size: [u32; 2]) -> Result<()> {
-        let is_other =
-            |current: &Option<VariantResources>| current.as_ref().is_none_or(|p| p.variant != variant);
+        let is_other = |current: &Option<VariantResources>| {
+            current.as_ref().is_none_or(|made| (made.variant, made.targets.size) != (variant, size))
+        };
         if is_other(&self.current) {
             std::mem::swap(&mut self.current, &mut self.previous);
+            self.unused_frames = 0;
         }
+        self.discard_unused(size);
         let with_lookups = scenes.iter().find(|placed| {
             variant.texture.is_some() && placed.scene.texture.is_some()
                 || variant.materials && placed.scene.materials.is_some()

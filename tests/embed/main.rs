@@ -32,6 +32,7 @@ mod rig;
 #[path = "../support/mod.rs"]
 mod support;
 mod updates;
+mod views;
 
 use ash::vk;
 
