@@ -134,8 +134,9 @@ use std::sync::Arc;
 pub struct Options {
     /// The pass in which the picture is drawn.
     pub target: Target,
-    /// Number of the host's frames in flight: when [`Renderer::prepare`] is called, the GPU has finished all but the last
-    /// `frames_in_flight` − 1 frames that were prepared without an error. From 1 to 64.
+    /// Number of calls of [`Renderer::prepare`] in flight: when it is called, the GPU has finished all but the last `frames_in_flight` − 1
+    /// frames that were prepared without an error. From 1 to 64. A host with two frames in flight that prepares two views in each with one
+    /// renderer gives 4.
     pub frames_in_flight: u32,
     /// See [`RenderOptions::precision`].
     pub precision: Precision,
