@@ -6,14 +6,14 @@ use super::rasterizer::{Fit, rasterizer_of, width_of_sums};
 use super::renderer::RenderOptions;
 use super::scene_resources::batches_of;
 use super::selection::Selection;
-use super::slicing::{Slicing, total_splats_per_tile};
+use super::slicing::{Slicing, may_slice, total_splats_per_tile};
 use super::splat_list::{ListExtent, extent_of, padded_instances, workgroup_of};
 use super::uniforms::Uniforms;
 use super::variant::{SceneVariant, Variant};
 use crate::error::{Error, Result};
 use crate::geometry::Camera;
-use crate::scene::Scene;
 use crate::scene::instance::Placed;
+use crate::scene::{Scene, Streams};
 use crate::settings::{Rasterizer, RasterizerChoice, RasterizerReason, Settings};
 use crate::vk::Device;
 
@@ -23,6 +23,11 @@ pub struct Description {
     pub variant: Variant,
     /// Reason for its rasterizer.
     pub reason: RasterizerReason,
+    /// The variant without the choices by camera, size and density.
+    base: Variant,
+    /// Whether frames of these scenes may be sliced.
+    may_slice: bool,
+    streams: Vec<Streams>,
     /// Variants of its scenes.
     pub scenes: Vec<SceneVariant>,
     /// Of each distinct scene, the groups of clusters that may be drawn.
@@ -62,27 +67,53 @@ pub fn describe(
     let workgroup = workgroup_of(device, extent);
     let splats_per_tile = total_splats_per_tile(scenes, camera, options.size, lod);
     // With a bound on the work of a tile there are no slices.
-    let sliced = options.most_splats.is_none() && slicing.needs_slices(scenes, splats_per_tile);
+    let may_slice = options.most_splats.is_none() && may_slice(scenes);
+    let sliced = may_slice && slicing.needs_slices(scenes, splats_per_tile);
     let streams: Vec<_> = scenes.iter().map(|placed| placed.scene.streams()).collect();
-    let variant = |options: &RenderOptions, rasterizer| {
-        Variant::new(&streams, perspective, settings, options, rasterizer).with_slices(sliced)
+    let base = |options: &RenderOptions, rasterizer| {
+        Variant::new(&streams, perspective, settings, options, rasterizer)
     };
-    let fit = Fit::new(device, options.size, workgroup.is_some(), &variant(options, Rasterizer::Compute));
+    let tiled = base(options, Rasterizer::Compute).with_slices(sliced);
+    let fit = Fit::new(device, options.size, workgroup.is_some(), &tiled);
     let (rasterizer, reason) = rasterizer_of(device, options, settings, scenes, fit)?;
     let precision = match settings.pull_push {
         Some(_) => options.precision,
         None => width_of_sums(device, options, rasterizer),
     };
     let options = RenderOptions { precision, ..*options };
-    let distant = uniforms.is_distant();
-    let variant =
-        Variant { distant, workgroup: workgroup.unwrap_or_default(), ..variant(&options, rasterizer) };
+    let base = Variant { workgroup: workgroup.unwrap_or_default(), ..base(&options, rasterizer) };
     let surfels = scenes.iter().map(|placed| placed.scene.count()).sum();
-    let variant = variant.with_occlusion_culling(surfels, options.size.map(u64::from).iter().product());
+    let variant = Variant { distant: uniforms.is_distant(), ..base }
+        .with_slices(sliced)
+        .with_occlusion_culling(surfels, options.size.map(u64::from).iter().product());
     check_lookups(&variant, scenes)?;
+    let scenes = scene_variants(variant, &streams, &uniforms);
+    Ok(Description {
+        uniforms,
+        variant,
+        reason,
+        base,
+        may_slice,
+        streams,
+        scenes,
+        selections,
+        splats_per_tile,
+        lod,
+    })
+}
+
+/// The variants of scenes with these `streams`.
+fn scene_variants(variant: Variant, streams: &[Streams], uniforms: &Uniforms) -> Vec<SceneVariant> {
     let instanced = !uniforms.instances.is_empty();
-    let scenes = streams.into_iter().map(|streams| SceneVariant::new(variant, streams, instanced)).collect();
-    Ok(Description { uniforms, variant, reason, scenes, selections, splats_per_tile, lod })
+    streams.iter().map(|streams| SceneVariant::new(variant, *streams, instanced)).collect()
+}
+
+impl Description {
+    /// The variants that frames of these scenes and settings choose by camera, size and density alone, with those of their scenes.
+    pub fn choices(&self) -> impl Iterator<Item = (Variant, Vec<SceneVariant>)> {
+        let with_scenes = |variant| (variant, scene_variants(variant, &self.streams, &self.uniforms));
+        self.base.choices(self.may_slice).into_iter().map(with_scenes)
+    }
 }
 
 /// Selects the groups of clusters of each scene that may be drawn; also returns the extent of their splats.

@@ -232,10 +232,12 @@ impl FrameResources {
         self.make_passes(&frame.scenes, bindings)
     }
 
-    /// Creates the pipelines of a frame, and no other resources.
+    /// Creates the pipelines of a frame, and of others that differ by camera, size and density only. Creates no other resources.
     pub fn make_pipelines(&mut self, frame: &Description) -> Result<()> {
-        for pass in self.pipelines.passes(&frame.variant, frame.scenes.len()) {
-            self.pipelines.for_pass(&self.device, pass, &frame.variant, &frame.scenes)?;
+        for (variant, scenes) in frame.choices() {
+            for pass in self.pipelines.passes(&variant, scenes.len()) {
+                self.pipelines.for_pass(&self.device, pass, &variant, &scenes)?;
+            }
         }
         Ok(())
     }

@@ -78,6 +78,11 @@ impl Slicing {
     }
 }
 
+/// Whether frames of these scenes need slices at any camera.
+pub fn may_slice(scenes: &[Placed<'_>]) -> bool {
+    scenes.iter().map(|placed| placed.scene.capacity() as f64).sum::<f64>() >= MOST_SPLATS
+}
+
 /// Average splats per covered tile, summed over the scenes, at a level of detail of `lod` px.
 pub fn total_splats_per_tile(scenes: &[Placed<'_>], camera: &Camera, size: [u32; 2], lod: f32) -> f64 {
     scenes.iter().map(|placed| splats_per_tile(placed, camera, size, lod)).sum()

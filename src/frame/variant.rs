@@ -244,6 +244,23 @@ impl Variant {
         Self { occlusion_culling: can && surfels > pixels, ..self }
     }
 
+    /// The variants that frames choose by camera, size and density alone, this one among them: of distant scenes or not, with
+    /// occlusion culling or not, and with slices or not, if frames `may_slice`.
+    pub fn choices(self, may_slice: bool) -> Vec<Self> {
+        let mut list = vec![self];
+        for (distant, sliced, culled) in [false, true]
+            .into_iter()
+            .flat_map(|distant| [(distant, false, 0), (distant, false, 1), (distant, true, 0)])
+        {
+            let possible = (self.perspective || !distant) && (may_slice || !sliced);
+            let variant = Self { distant, ..self }.with_slices(sliced).with_occlusion_culling(culled, 0);
+            if possible && !list.contains(&variant) {
+                list.push(variant);
+            }
+        }
+        list
+    }
+
     /// Whether passes after shading read depths.
     pub fn reads_depth(&self) -> bool {
         self.ao || self.edl

@@ -1,17 +1,20 @@
 //! Pipelines are created when the host asks for it, and only once.
 
-use crate::fixture::{SIZE, assert_silent, camera, open, surfels, upload};
+use crate::fixture::{SIZE, assert_silent, camera, open, sphere, surfels, upload};
 use crate::host::Host;
 use crate::host::frame::{Frame, Kind, Way};
 use crate::host::native::{self, Native};
 use crate::{FLOATS, ONE};
 use ash::vk;
+use glam::DVec3;
 use std::ffi::{CStr, c_void};
 use std::sync::Arc;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use surfel::Settings;
 use surfel::embed::{Options, Renderer, View};
+use surfel::geometry::Camera;
+use surfel::settings::Alpha;
 use surfel::settings::methods::Method;
 use surfel::vk::Device;
 
@@ -84,7 +87,8 @@ fn a_frame_whose_pipelines_are_there_makes_none() {
     let device = counted_device(&host);
     let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
     let frame = Frame::new(&host, kind, SIZE).unwrap();
-    let scene = upload(&host, &device, &surfels());
+    // So few that no frame is sliced, which needs other pipelines.
+    let scene = upload(&host, &device, &sphere(2_000));
     let options = Options { frames_in_flight: 1, ..Options::new(frame.target()) };
     let view = View::whole(camera(), SIZE);
     for name in Method::ALL.map(|method| method.name) {
@@ -104,6 +108,7 @@ fn a_frame_whose_pipelines_are_there_makes_none() {
                 .unwrap();
             };
             show(&mut renderer, &first, &|_| {});
+            renderer.make_pipelines(&scene, &view, &first).unwrap();
             let ahead = made(|| {
                 // The prepared frame is still drawn.
                 show(&mut renderer, &first, &|renderer| {
@@ -121,6 +126,39 @@ fn a_frame_whose_pipelines_are_there_makes_none() {
         }
     }
     drop(scene);
+    frame.destroy(&host);
+    assert_silent(&host);
+}
+
+/// By its camera and size a frame is of distant surfels or not, dense or not, and of more surfels than pixels or not.
+#[test]
+fn cameras_and_sizes_need_no_other_pipelines() {
+    let Some(host) = open(|all| all) else { return };
+    let device = host.external_device(None).unwrap();
+    let kind = Kind { way: Way::Rendering, colour: FLOATS, normals: false, samples: ONE, reversed: true };
+    let frame = Frame::new(&host, kind, [64, 64]).unwrap();
+    let scene = upload(&host, &device, &sphere(9_000));
+    let options = Options { frames_in_flight: 1, ..Options::new(frame.target()) };
+    // SAFETY: the target is the frame's.
+    let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
+    let settings = Settings { alpha: Alpha::Mask, pixel_filter: 0.0, ..settings("perspective-ewa") };
+    let from = |distance: f64, angle: f64| {
+        let eye = distance * DVec3::new(0.3, 0.2, 0.9);
+        Camera::look_at(eye, DVec3::ZERO, DVec3::Y, angle, 1.0, 0.1).unwrap()
+    };
+    renderer.make_pipelines(&scene, &View::whole(from(3.0, 0.8), [64, 64]), &settings).unwrap();
+    let before = device.usage().pipelines;
+    for (camera, size) in
+        [(from(3.0, 0.8), [64, 64]), (from(3.0, 0.8), [128, 128]), (from(60.0, 0.8), [64, 64])]
+            .into_iter()
+            .chain([(from(3e3, 0.8e-3), [64, 64]), (from(3e3, 0.02), [64, 64])])
+    {
+        let view = View::whole(camera, size);
+        // SAFETY: recorded outside a render pass, and waited for.
+        host.run(|cmd| Ok(unsafe { renderer.prepare(cmd, &scene, &view, &settings) }?)).unwrap();
+        assert_eq!(device.usage().pipelines, before, "{view:?}");
+    }
+    drop((renderer, scene));
     frame.destroy(&host);
     assert_silent(&host);
 }
