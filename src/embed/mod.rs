@@ -92,6 +92,7 @@ mod formats;
 pub mod native;
 #[cfg(feature = "window")]
 mod offscreen_view;
+mod options;
 mod reports;
 mod target;
 mod upload;
@@ -106,6 +107,7 @@ pub use buffers::{Buffers, READ_ACCESS, READ_STAGES, Radii, Values, update};
 pub use depth_shading::{DepthAttachment, DepthShading};
 #[cfg(feature = "window")]
 pub use offscreen_view::OffscreenView;
+pub use options::Options;
 pub use reports::Measured;
 use reports::Reports;
 pub use target::{Pass, Target};
@@ -120,44 +122,14 @@ use crate::frame::uniforms::Uniforms;
 use crate::frame::variant::Variant;
 use crate::frame::{FrameReport, RenderOptions};
 use crate::scene::instance::Instances;
+use crate::settings::Outputs;
 use crate::settings::Settings;
-use crate::settings::{Outputs, Precision, RasterizerChoice};
 use crate::vk::shaders::layout;
 use crate::vk::{DescriptorSet, Device, Draws, HostPass, Recorder};
 use ash::vk;
 use composite::{Composite, CompositeKind};
 use deferred_destruction::DeferredDestruction;
 use std::sync::Arc;
-
-/// Options of a [`Renderer`].
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// The pass in which the picture is drawn.
-    pub target: Target,
-    /// Number of calls of [`Renderer::prepare`] in flight: when it is called, the GPU has finished all but the last `frames_in_flight` − 1
-    /// frames that were prepared without an error. From 1 to 64. A host with two frames in flight that prepares two views in each with one
-    /// renderer gives 4.
-    pub frames_in_flight: u32,
-    /// See [`RenderOptions::precision`].
-    pub precision: Precision,
-    /// See [`RenderOptions::rasterizer`].
-    pub rasterizer: RasterizerChoice,
-    /// See [`RenderOptions::most_splats`].
-    pub most_splats: Option<u32>,
-}
-
-impl Options {
-    /// Two frames in flight, full precision, the rasterizer chosen automatically, no bound on the work of a frame.
-    pub fn new(target: Target) -> Self {
-        Self {
-            target,
-            frames_in_flight: 2,
-            precision: Precision::Full,
-            rasterizer: RasterizerChoice::Automatic,
-            most_splats: None,
-        }
-    }
-}
 
 /// Renders scenes into frames of a host.
 pub struct Renderer {
@@ -168,6 +140,7 @@ pub struct Renderer {
     deferred: DeferredDestruction,
     composites: Vec<Arc<Composite>>,
     frame: FrameResources,
+    is_incomplete: bool,
     target: Target,
     device: Arc<Device>,
 }
@@ -210,6 +183,7 @@ impl Renderer {
             reports: Reports::new(frames_in_flight),
             composites: Vec::new(),
             frame: FrameResources::new(device, options, Disposal::Deferred(Vec::new()), None)?,
+            is_incomplete: false,
             target,
             device: device.clone(),
         })
@@ -233,14 +207,14 @@ impl Renderer {
         view: &View,
         settings: &Settings,
     ) -> Result<()> {
-        let incomplete = self.frame.learn();
+        self.is_incomplete = self.frame.learn();
         let pending = self.make(scenes.into(), view, settings);
         // Also after an error: replaced resources may be in use.
         self.deferred.extend(self.frame.take_deferred());
         let (uniforms, pending) = pending?;
         let scenes: Vec<_> = self.frame.scenes().collect();
         self.reports.begin(&self.device, &scenes, self.frame.lod())?;
-        self.reports.mark(incomplete);
+        self.reports.mark(self.is_incomplete);
         self.deferred.advance();
         let (timestamps, tail) = self.reports.present();
         // SAFETY: by the caller; there is a report for each frame in flight.
@@ -324,8 +298,16 @@ impl Renderer {
         drop(self.frame.take_deferred());
         self.deferred.finish();
         self.reports.finish()?;
-        self.reports.mark(self.frame.learn());
+        self.is_incomplete = self.frame.learn();
+        self.reports.mark(self.is_incomplete);
         Ok(())
+    }
+
+    /// Whether a tile lacked splats in a frame that was known to be over in the last call of [`Renderer::prepare`] or [`Renderer::finish`],
+    /// but not in the one before. Without [`Options::most_splats`], frames as dense are complete from then on, as they are drawn in slices: a
+    /// host that shows a still view prepares another frame.
+    pub fn is_incomplete(&self) -> bool {
+        self.is_incomplete
     }
 
     /// Creates the resources of a frame: its uniforms, and the draw of its picture.

@@ -37,8 +37,9 @@ pub struct RenderOptions {
     /// or to inspect intermediate targets. The picture is identical bit by bit.
     pub split: bool,
     /// Bound on the work of a frame on the compute path: about the maximum number of splats that each tile of 8 × 8 px visits in visibility,
-    /// and again in coverage and attribute. A tile with more lacks the farthest ones, see [`FrameReport::incomplete`]. `None` visits all. The
-    /// raster path has no such bound, so that frames of splats with a bound take the compute path, or are rejected.
+    /// and again in coverage and attribute. A tile with more lacks the farthest ones, see [`FrameReport::incomplete`]. `None` visits all: a
+    /// frame of which a tile lacks splats, which happens on lavapipe, is rendered again in slices. The raster path has no such bound, so that
+    /// frames of splats with a bound take the compute path, or are rejected.
     pub most_splats: Option<u32>,
 }
 

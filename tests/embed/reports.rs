@@ -157,7 +157,9 @@ fn a_frame_that_lacks_splats_is_reported_and_the_next_one_lacks_none() {
             let colours = fixture.render(&host, &view, &settings, None).0;
             // SAFETY: the frame was waited for.
             unsafe { fixture.renderer.finish() }.unwrap();
-            (colours, fixture.renderer.report().unwrap().incomplete)
+            let incomplete = fixture.renderer.report().unwrap().incomplete;
+            assert_eq!(fixture.renderer.is_incomplete(), incomplete);
+            (colours, incomplete)
         });
         fixture.destroy(&host);
         frames
