@@ -71,12 +71,14 @@ use targets::Targets;
 ///         .new_layout(vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL)
 ///         .image(depth)
 ///         .subresource_range(vk::ImageSubresourceRange {
+///             // Of a format with a stencil both aspects, or the feature separateDepthStencilLayouts.
 ///             aspect_mask: vk::ImageAspectFlags::DEPTH,
 ///             level_count: 1,
 ///             layer_count: 1,
 ///             ..Default::default()
 ///         });
-///     let (drawn, read) = (vk::PipelineStageFlags::LATE_FRAGMENT_TESTS, vk::PipelineStageFlags::COMPUTE_SHADER);
+///     let drawn = vk::PipelineStageFlags::EARLY_FRAGMENT_TESTS | vk::PipelineStageFlags::LATE_FRAGMENT_TESTS;
+///     let read = vk::PipelineStageFlags::COMPUTE_SHADER;
 ///     unsafe {
 ///         host.cmd_pipeline_barrier(cmd, drawn, read, vk::DependencyFlags::empty(), &[], &[], &[barrier]);
 ///         shading.prepare(cmd, view, settings)?;
