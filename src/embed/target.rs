@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// Maximum number of colour targets of a composite; every device supports as many.
 const MOST: usize = 4;
 
-/// The host's pass in which the picture is drawn.
+/// The host's pass in which the picture is drawn, without multiview: its view mask is 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pass {
     /// A subpass of a render pass, or of any compatible render pass.

@@ -8,7 +8,7 @@ use ash::vk;
 /// Maximum number of the host's subpasses before and after.
 const MOST_SUBPASSES: u32 = 1 << 16;
 
-/// The host's render pass: its attachments and subpasses.
+/// The host's render pass: its attachments and subpasses, without multiview (all view masks are 0).
 #[derive(Clone, Debug)]
 pub struct HostRenderPass<'a> {
     /// All attachments of the host. The engine's attachments follow.
