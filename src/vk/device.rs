@@ -346,7 +346,7 @@ impl Drop for Device {
             }
             self.pipelines.destroy(&self.raw);
             self.descriptor_pools.destroy(&self.raw);
-            self.pipeline_cache.store_and_destroy(&self.raw);
+            self.pipeline_cache.save_and_destroy(&self.raw);
             ManuallyDrop::drop(&mut self.pipeline_cache);
             ManuallyDrop::drop(&mut self.memory);
             if let Owner::Engine(_) = self.owner {

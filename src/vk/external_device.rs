@@ -39,7 +39,8 @@ pub struct ExternalDevice<'a> {
     pub memory: Option<Box<dyn MemorySource>>,
     /// Like [`DeviceOptions::memory_blocks`](super::DeviceOptions::memory_blocks), for the engine's allocator.
     pub memory_blocks: MemoryBlocks,
-    /// Like [`DeviceOptions::pipeline_cache`](super::DeviceOptions::pipeline_cache).
+    /// Like [`DeviceOptions::pipeline_cache`](super::DeviceOptions::pipeline_cache). Written by [`Device::save_pipelines`], and when the device
+    /// is dropped.
     pub pipeline_cache: Option<PathBuf>,
 }
 

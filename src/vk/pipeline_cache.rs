@@ -1,15 +1,30 @@
 //! Pipeline cache on disk.
 
+use super::{Device, lock};
 use crate::error::{Error, Result};
 use ash::vk;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 use xxhash_rust::xxh3::xxh3_128;
 
 pub(super) struct PipelineCache {
     pub(super) raw: vk::PipelineCache,
     file: Option<PathBuf>,
-    loaded: Vec<u8>,
+    /// The data in the file.
+    saved: Mutex<Vec<u8>>,
+}
+
+impl Device {
+    /// Writes the pipelines that were created so far to the [pipeline cache](super::DeviceOptions::pipeline_cache) on disk, which otherwise
+    /// happens only when the device is dropped. Without a folder, or if nothing has changed since, it writes nothing.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the file cannot be written; [`Error::Vulkan`].
+    pub fn save_pipelines(&self) -> Result<()> {
+        // SAFETY: the cache is the device's.
+        unsafe { self.pipeline_cache.save(&self.raw) }
+    }
 }
 
 impl PipelineCache {
@@ -32,20 +47,34 @@ impl PipelineCache {
         // SAFETY: the data's header names this device and driver.
         let raw = unsafe { device.create_pipeline_cache(&info, None) }
             .map_err(Error::vulkan("vkCreatePipelineCache"))?;
-        Ok(Self { raw, file, loaded })
+        Ok(Self { raw, file, saved: Mutex::new(loaded) })
+    }
+
+    /// Writes the cache to its file, if it has changed.
+    ///
+    /// # Safety
+    /// `device` created the cache.
+    unsafe fn save(&self, device: &ash::Device) -> Result<()> {
+        let Some(file) = &self.file else { return Ok(()) };
+        let mut saved = lock(&self.saved);
+        // SAFETY: by the caller.
+        let data = unsafe { device.get_pipeline_cache_data(self.raw) }
+            .map_err(Error::vulkan("vkGetPipelineCacheData"))?;
+        if data != *saved {
+            write(file, &data).map_err(Error::io(file, "cannot write the pipeline cache"))?;
+            *saved = data;
+        }
+        Ok(())
     }
 
     /// Writes the cache if it has changed, and destroys it.
     ///
     /// # Safety
     /// `device` created the cache, and no pipeline is being created with it.
-    pub(super) unsafe fn store_and_destroy(&self, device: &ash::Device) {
+    pub(super) unsafe fn save_and_destroy(&self, device: &ash::Device) {
         // SAFETY: by the caller.
-        let data = unsafe { device.get_pipeline_cache_data(self.raw) }.unwrap_or_default();
-        if let Some(file) = self.file.as_ref().filter(|_| data != self.loaded)
-            && let Err(error) = write(file, &data)
-        {
-            log::debug!("{}: the pipeline cache is not saved: {error}", file.display());
+        if let Err(error) = unsafe { self.save(device) } {
+            log::debug!("{error}");
         }
         // SAFETY: by the caller.
         unsafe { device.destroy_pipeline_cache(self.raw, None) };

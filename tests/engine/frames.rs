@@ -13,7 +13,7 @@ use surfel::settings::splatting::{Normalization, Splatting, Visibility};
 use surfel::settings::{Alpha, Cull, DirectionalLight, Edges, Shading, Widen};
 use surfel::verify::reference::{Expected, Tolerance};
 use surfel::verify::scenes::bumpy_sphere;
-use surfel::vk::{Device, DeviceLimits};
+use surfel::vk::{Device, DeviceLimits, DeviceOptions};
 use surfel::{Error, Outputs, Picture, Precision, Rasterizer, RenderOptions, Renderer, Scene, Settings};
 
 pub const SIZE: [u32; 2] = [256, 192];
@@ -305,6 +305,25 @@ fn without_timestamps_there_are_no_times() {
     let report = renderer.render(&scene, &camera(SIZE), &splats_alone()).unwrap();
     assert!(report.pass_times.is_empty());
     assert_silent(&device);
+}
+
+#[test]
+fn a_pipeline_cache_is_saved_before_its_device_is_dropped() {
+    let Some(_other) = device(DeviceLimits::default()) else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let options = DeviceOptions { pipeline_cache: Some(folder.path().into()), ..Default::default() };
+    let device = Device::open(&options).unwrap();
+    let files = || std::fs::read_dir(folder.path()).unwrap().count();
+    let scene = Scene::upload(&device, &sphere(50)).unwrap();
+    let options = RenderOptions { size: [8, 8], ..Default::default() };
+    Renderer::new(&device, options).unwrap().render(&scene, &camera([8, 8]), &splats_alone()).unwrap();
+    assert_eq!(files(), 0);
+    device.save_pipelines().unwrap();
+    assert_eq!(files(), 1);
+    std::fs::remove_dir_all(folder.path()).unwrap();
+    // Nothing has changed since.
+    device.save_pipelines().unwrap();
+    assert!(!folder.path().exists());
 }
 
 #[test]
