@@ -25,6 +25,8 @@ pub struct CompositeKind {
     pub id: Option<u32>,
     /// Whether the host's depth is reversed; `None` without depth.
     pub reversed: Option<bool>,
+    /// Whether depth is written.
+    pub write_depth: bool,
     /// Whether the shader encodes sRGB.
     pub encode: bool,
     /// Whether α is coverage.
@@ -40,7 +42,8 @@ pub struct Composite {
 impl CompositeKind {
     /// The draws, by the α of their pixels.
     fn draws(&self) -> &'static [DrawnAlpha] {
-        let more = self.reversed.is_some() || self.normal.is_some() || self.id.is_some();
+        let writes_depth = self.reversed.is_some() && self.write_depth;
+        let more = writes_depth || self.normal.is_some() || self.id.is_some();
         DrawnAlpha::of_frame(more, self.coverage)
     }
 
@@ -75,7 +78,7 @@ impl Composite {
             let code = [Code::from(&shaders::COMPOSITE_VERTEX), Code::from(fragment).at_locations(places)];
             let constants = drawn.add_to(constants.clone());
             let within = drawn.within(within, kind.picture);
-            let depth = drawn.depth_test(kind.reversed);
+            let depth = drawn.depth_test(kind.reversed, kind.write_depth);
             DrawPipeline::of_host(device, &[&layout], code, &constants, &within, depth)
         };
         let pipelines = kind.draws().iter().map(pipeline).collect::<Result<_>>()?;

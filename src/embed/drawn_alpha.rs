@@ -37,9 +37,9 @@ impl DrawnAlpha {
         }
     }
 
-    /// The depth test; `reversed` is that of the host's depth, if it has any.
-    pub(super) fn depth_test(self, reversed: Option<bool>) -> DepthTest {
-        let write = self != Self::LeastCovered;
+    /// The depth test, with depth writes if the frame `writes` depth; `reversed` is that of the host's depth, if it has any.
+    pub(super) fn depth_test(self, reversed: Option<bool>, writes: bool) -> DepthTest {
+        let write = writes && self != Self::LeastCovered;
         reversed.map_or(DepthTest::None, |reversed| DepthTest::Host { reversed, write })
     }
 }

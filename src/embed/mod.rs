@@ -63,6 +63,7 @@
 //!         depth: Some(vk::Format::D32_SFLOAT),
 //!         stencil: vk::Format::UNDEFINED,
 //!         reversed: true,
+//!         write_depth: true,
 //!         samples: vk::SampleCountFlags::TYPE_1,
 //!         picture: 0,
 //!         normal: None,
@@ -358,6 +359,7 @@ impl Renderer {
             normal: self.target.normal,
             id: self.target.id,
             reversed: self.target.depth.map(|_| self.target.reversed),
+            write_depth: self.target.write_depth,
             encode: self.target.encode,
             coverage: variant.coverage,
         };

@@ -37,6 +37,8 @@ pub struct Target {
     pub stencil: vk::Format,
     /// Whether depth is reversed: greater is nearer.
     pub reversed: bool,
+    /// Whether depth is written where α ≥ ½. If not, it is only tested, and the attachment may be in a read-only layout.
+    pub write_depth: bool,
     /// Sample count. All samples of a pixel get its picture, except those that the host's geometry hides.
     pub samples: vk::SampleCountFlags,
     /// Location of the picture, below 4: premultiplied linear RGB, blended over the contents.

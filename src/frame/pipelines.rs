@@ -184,9 +184,8 @@ impl Pipelines {
         constants: &Constants,
     ) -> Result<Vec<Pipeline>> {
         let draws = self.host.iter().flat_map(|host| &host.draws);
-        let drawn = |draw: &&HostDraw| {
-            std::ptr::eq(draw.pass, pass) && (variant.coverage || !draw.is_of_coverage)
-        };
+        let drawn =
+            |draw: &&HostDraw| std::ptr::eq(draw.pass, pass) && (variant.coverage || !draw.is_of_coverage);
         let pipeline = |draw: &HostDraw| {
             let code = [vertex, draw.fragment.unwrap_or(fragment)].map(Code::from);
             let constants = constants.clone().and(&draw.constants);

@@ -1,15 +1,15 @@
 //! Outlines: pixels of which less than half is covered only blend, whatever the host draws first.
 
-use crate::fixture::{Fixture, assert_silent, open, sphere};
+use crate::fixture::{Fixture, assert_silent, open, sphere, upload};
 use crate::host::Host;
-use crate::host::frame::{IDS, Kind, Way};
+use crate::host::frame::{Frame, IDS, Kind, Way};
 use crate::host::mesh::Mesh;
 use crate::host::native;
 use crate::host::scene::parallelogram;
 use crate::native_rig::{D32, Drawn};
 use crate::{FLOATS, FOUR, ONE};
 use glam::{DVec3, Vec3};
-use surfel::embed::{Options, Renderer, View};
+use surfel::embed::{self, Options, Renderer, View};
 use surfel::geometry::Camera;
 use surfel::settings::Alpha;
 use surfel::settings::methods::Method;
@@ -17,8 +17,7 @@ use surfel::vk::{Device, DeviceOptions};
 use surfel::{Outputs, Picture, Rasterizer, RenderOptions, Settings};
 
 const SIZE: [u32; 2] = [64, 64];
-const KIND: Kind =
-    Kind { way: Way::Rendering, colour: FLOATS, normals: true, samples: ONE, reversed: true };
+const KIND: Kind = Kind { way: Way::Rendering, colour: FLOATS, normals: true, samples: ONE, reversed: true };
 
 fn view() -> View {
     let eye = DVec3::new(0.0, 0.0, 3.0);
@@ -51,9 +50,7 @@ fn assert_written(picture: &Picture, depths: &[f32], normals: &[[f32; 4]]) {
 #[test]
 fn pixels_that_are_covered_by_less_than_half_only_blend() {
     let Some(host) = open(|all| all) else { return };
-    for (name, rasterizer) in
-        [("perspective-ewa", Rasterizer::Compute), ("object-ewa", Rasterizer::Draw)]
-    {
+    for (name, rasterizer) in [("perspective-ewa", Rasterizer::Compute), ("object-ewa", Rasterizer::Draw)] {
         let settings = settings(name);
         let own = alone(&settings, rasterizer, false);
         let mut fixture = Fixture::new(&host, KIND, SIZE, Some(rasterizer), &sphere(3_000));
@@ -92,11 +89,11 @@ fn ids_are_those_of_pixels_that_are_covered_by_half() {
     let Some(host) = open(|all| all) else { return };
     let settings = Settings { pixel_filter: 0.75, alpha: Alpha::Coverage, ..settings("pull-push") };
     let own = alone(&settings, Rasterizer::Compute, true);
-    let frame = crate::host::frame::Frame::with(&host, Kind { normals: false, ..KIND }, SIZE, &[IDS]).unwrap();
+    let frame = Frame::with(&host, Kind { normals: false, ..KIND }, SIZE, &[IDS]).unwrap();
     let device = host.external_device(None).unwrap();
     // SAFETY: the target is the frame's.
     let renderer = unsafe { Renderer::new(&device, Options::new(frame.target())) }.unwrap();
-    let scene = crate::fixture::upload(&host, &device, &sphere(3_000));
+    let scene = upload(&host, &device, &sphere(3_000));
     let mut fixture = Fixture { frame, renderer, scene, device };
     fixture.render(&host, &view(), &settings, None);
     let ids = fixture.frame.read_ids(&host).unwrap();
@@ -106,6 +103,37 @@ fn ids_are_those_of_pixels_that_are_covered_by_half() {
         assert_eq!(*found == Picture::NOBODY, colour[3] < 0.5, "{colour:?}");
         assert!([own, Picture::NOBODY].contains(found) || own == Picture::NOBODY, "{found} {own}");
     }
+    fixture.destroy(&host);
+    assert_silent(&host);
+}
+
+#[test]
+fn depth_that_is_only_tested_stays() {
+    let Some(host) = open(|all| all) else { return };
+    let frame = Frame::new(&host, Kind { normals: false, ..KIND }, SIZE).unwrap();
+    let device = host.external_device(None).unwrap();
+    let target = embed::Target { write_depth: false, ..frame.target() };
+    // SAFETY: the target is the frame's.
+    let renderer = unsafe { Renderer::new(&device, Options::new(target)) }.unwrap();
+    let scene = upload(&host, &device, &sphere(3_000));
+    let mut fixture = Fixture { frame, renderer, scene, device };
+    // In front of the right half of the sphere.
+    let sides = [Vec3::new(2.0, 0.0, 0.0), Vec3::new(0.0, 2.0, 0.0)];
+    let mesh = Mesh::new(&host, &parallelogram(Vec3::new(2.0, 0.0, 1.5), sides), fixture.frame.mesh_target());
+    let mesh = mesh.unwrap();
+    let settings = Settings { alpha: Alpha::Mask, ..settings("perspective-ewa") };
+    let (colours, depths) = fixture.render(&host, &view(), &settings, Some(&mesh));
+    let own = alone(&settings, Rasterizer::Compute, false);
+    let mut counts = [0; 2];
+    for ((colour, depth), own) in colours.iter().zip(depths).zip(&own.colour).filter(|(_, own)| own[3] == 1.0)
+    {
+        let is_mesh = depth > 0.0;
+        assert!((depth - 0.1 / 1.5).abs() < 1e-6 || !is_mesh, "{depth}");
+        assert_eq!(colour == own, !is_mesh);
+        counts[usize::from(is_mesh)] += 1;
+    }
+    assert!(counts.iter().all(|count| *count > 300), "{counts:?}");
+    mesh.destroy(&host);
     fixture.destroy(&host);
     assert_silent(&host);
 }

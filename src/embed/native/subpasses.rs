@@ -78,7 +78,7 @@ fn depth_test(plan: &Plan, step: Step, drawn: DrawnAlpha) -> DepthTest {
         Step::Visibility | Step::Nearest => DepthTest::Nearest,
         Step::Attribute if plan.marks() => DepthTest::Marked,
         Step::Attribute => DepthTest::NotBehind,
-        Step::Normalize => drawn.depth_test(plan.host.reversed),
+        Step::Normalize => drawn.depth_test(plan.host.reversed, true),
     }
 }
 

@@ -320,6 +320,7 @@ impl TargetRenderer {
             depth: Some(DEPTH),
             stencil: vk::Format::UNDEFINED,
             reversed: true,
+            write_depth: true,
             samples: vk::SampleCountFlags::TYPE_1,
             picture: 0,
             normal: None,

@@ -29,6 +29,7 @@ impl Darkening {
             depth: None,
             stencil: vk::Format::UNDEFINED,
             reversed: false,
+            write_depth: false,
             samples: vk::SampleCountFlags::TYPE_1,
             picture: 0,
             normal: None,

@@ -108,6 +108,7 @@ impl Frame {
             depth: Some(self.depth.format),
             stencil: self.stencil(),
             reversed: self.kind.reversed,
+            write_depth: true,
             samples: self.kind.samples,
             picture: self.more.len() as u32,
             normal: self.location(NORMALS),

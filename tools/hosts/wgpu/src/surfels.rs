@@ -66,6 +66,7 @@ impl Embedded {
             depth: Some(DEPTH),
             stencil: vk::Format::UNDEFINED,
             reversed: true,
+            write_depth: true,
             samples,
             picture: 0,
             normal: None,
