@@ -1,5 +1,6 @@
 //! Cached view: an offscreen view that is re-rendered only when its inputs change.
 
+use super::depths::Depths;
 use std::sync::Arc;
 use surfel::embed::OffscreenView;
 use surfel::geometry::{Camera, ValueRange};
@@ -98,8 +99,10 @@ impl CachedView {
         self.view.report(presenter)
     }
 
-    /// Width and height, px, and the depths of the last picture, row by row.
-    pub fn depths(&self, presenter: &Presenter) -> Result<Option<([u32; 2], &[u8])>> {
-        self.view.depths(presenter)
+    /// The depths of the last picture.
+    pub fn depths(&self, presenter: &Presenter) -> Result<Option<Depths<'_>>> {
+        let Some(drawn) = &self.drawn else { return Ok(None) };
+        let depths = self.view.depths(presenter)?;
+        Ok(depths.map(|(size, bytes)| Depths { camera: drawn.camera, size, bytes }))
     }
 }

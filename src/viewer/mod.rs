@@ -12,6 +12,7 @@ mod appearance;
 mod cached_view;
 mod choices;
 mod comparison;
+mod depths;
 mod directions;
 mod distribution;
 mod events;

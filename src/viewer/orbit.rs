@@ -15,6 +15,8 @@ const STEP: f64 = 0.85;
 const DISTANCES: [f64; 2] = [1e-6, 1e3];
 /// Speed of flight, distances to the pivot per second.
 const SPEED: f64 = 0.75;
+/// The least distance to the pivot that counts for the speed of flight, in radii of the scene: close to a surface, too, flight goes on.
+const FLIGHT_DISTANCE: f64 = 0.02;
 /// Cosine of the pitch below which the camera looks straight up or down, where the up axis of the world does not determine that of the picture.
 const STRAIGHT: f64 = 1e-6;
 
@@ -89,7 +91,12 @@ impl Orbit {
 
     /// Distance of the pivot ahead of the eye, along the view direction.
     pub fn distance(&self) -> f64 {
-        self.axes()[0].dot(self.pivot - self.eye)
+        self.distance_of(self.pivot)
+    }
+
+    /// Distance of a point ahead of the eye, along the view direction.
+    fn distance_of(&self, point: DVec3) -> f64 {
+        self.axes()[0].dot(point - self.eye)
     }
 
     /// The pose, as a camera file stores it.
@@ -122,20 +129,24 @@ impl Orbit {
         self.pivot -= step;
     }
 
-    /// Zooms by steps of the wheel towards the point under the cursor, which stays there. `surface` is the distance of the surface at the
-    /// cursor; the pivot's if `None`.
+    /// Zooms by steps of the wheel towards the point under the cursor, which stays there. `surface` is the surface point at the cursor, which
+    /// becomes the pivot; without one the pivot's distance counts.
     pub fn zoom(
         &mut self,
         steps: f64,
         at: DVec2,
-        surface: Option<f64>,
+        surface: Option<DVec3>,
         viewport: &Viewport,
         bounds: &Bounds,
     ) {
         let [least, most] = DISTANCES.map(|distance| distance * bounds.radius);
+        let surface = surface.map(|point| self.distance_of(point)).filter(|distance| *distance > 0.0);
+        if let Some(distance) = surface {
+            self.set_pivot(self.point(at, distance, viewport), viewport);
+        }
         let distance = self.distance();
-        let part = (distance * STEP.powf(steps)).clamp(least, most.max(distance)) / distance;
-        let under = self.point(at, surface.unwrap_or(distance), viewport);
+        let part = (distance * STEP.powf(steps)).clamp(least.min(distance), most.max(distance)) / distance;
+        let under = self.point(at, distance, viewport);
         self.eye = under + part * (self.eye - under);
         self.pivot = under + part * (self.pivot - under);
     }
@@ -159,10 +170,12 @@ impl Orbit {
     }
 
     /// Flies for some seconds; `direction` is right, up, ahead, each from −1 to 1.
-    pub fn fly(&mut self, direction: DVec3, seconds: f64) {
+    pub fn fly(&mut self, direction: DVec3, seconds: f64, viewport: &Viewport, bounds: &Bounds) {
         let [forward, right, up] = self.axes();
+        // Under a parallel projection the pivot's distance is the scale of the picture.
+        let least = if viewport.parallel { 0.0 } else { FLIGHT_DISTANCE * bounds.radius };
         let step = SPEED
-            * self.distance()
+            * self.distance().max(least)
             * seconds
             * (direction.x * right + direction.y * up + direction.z * forward);
         self.eye += step;

@@ -1,7 +1,7 @@
 //! Split view: the picture beneath the panels, or two pictures of the scene side by side.
 
 use super::cached_view::{CachedView, ViewRequest};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use std::sync::Arc;
 use surfel::geometry::{Camera, ValueRange};
 use surfel::settings::Shading;
@@ -128,16 +128,9 @@ impl SplitView {
         Ok(Reports { left: self.left.report(presenter)?, right })
     }
 
-    /// Depth of the last frame at `at`, px in a picture of `size` px; `None` where there is no surface.
-    pub fn pick(&self, at: DVec2, size: [u32; 2], presenter: &Presenter) -> Result<Option<f64>> {
-        let Some((own, depths)) = self.left.depths(presenter)? else { return Ok(None) };
-        let part = at / DVec2::from(size.map(f64::from));
-        let [x, y] = [0, 1].map(|axis| {
-            let pixel = (part[axis] * f64::from(own[axis])).floor();
-            (pixel >= 0.0 && pixel < f64::from(own[axis])).then_some(pixel as usize)
-        });
-        let first = x.zip(y).map(|(x, y)| 4 * (y * own[0] as usize + x));
-        let bytes = first.and_then(|first| depths.get(first..first + 4)?.try_into().ok());
-        Ok(bytes.map(f32::from_ne_bytes).filter(|depth| *depth > 0.0).map(f64::from))
+    /// The surface point of the last frame at `at`, px in a picture of `size` px; `None` if there is none near it.
+    pub fn surface_at(&self, at: DVec2, size: [u32; 2], presenter: &Presenter) -> Result<Option<DVec3>> {
+        let depths = self.left.depths(presenter)?;
+        Ok(depths.and_then(|depths| depths.surface_at(at / DVec2::from(size.map(f64::from)))))
     }
 }

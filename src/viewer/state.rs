@@ -241,18 +241,17 @@ impl ViewState {
         Some((orbit, viewport, source.extent()))
     }
 
-    /// Zooms by steps of the wheel towards the position `at`, px.
-    pub fn zoom(&mut self, steps: f64, at: DVec2) {
+    /// Zooms by steps of the wheel towards the position `at`, px, where there may be a surface point.
+    pub fn zoom(&mut self, steps: f64, at: DVec2, surface: Option<DVec3>) {
         if let Some((orbit, viewport, extent)) = self.orbit_mut() {
-            orbit.zoom(steps, at, None, viewport, &extent.bounds());
+            orbit.zoom(steps, at, surface, viewport, &extent.bounds());
         }
     }
 
-    /// Makes the surface at `at`, px, the pivot; `distance` is its distance ahead of the eye. The picture stays. An infinite distance is ignored.
-    pub fn set_pivot(&mut self, at: DVec2, distance: f64) {
-        let Some((orbit, viewport, _)) = self.orbit_mut() else { return };
-        if distance.is_finite() {
-            orbit.set_pivot(orbit.point(at, distance, viewport), viewport);
+    /// Makes a point the pivot. The picture stays.
+    pub fn set_pivot(&mut self, point: DVec3) {
+        if let Some((orbit, viewport, _)) = self.orbit_mut() {
+            orbit.set_pivot(point, viewport);
         }
     }
 

@@ -10,6 +10,7 @@ use super::quality::Quality;
 use super::screenshots::Screenshot;
 use super::split_view::SplitView;
 use super::state::ViewState;
+use glam::{DVec2, DVec3};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use surfel::vk::{Device, Presenter};
@@ -190,9 +191,11 @@ impl WindowRenderer {
 
     /// Moves the camera by the time since the last frame, if keys of flight are held.
     fn fly(&mut self, state: &mut ViewState, input: &InputState, now: Instant) {
-        let Some((direction, (orbit, ..))) = input.flight().zip(state.orbit_mut()) else { return };
+        let Some((direction, (orbit, viewport, extent))) = input.flight().zip(state.orbit_mut()) else {
+            return;
+        };
         let seconds = self.last.map_or(0.0, |last| (now - last).as_secs_f64());
-        orbit.fly(direction, seconds.min(0.25));
+        orbit.fly(direction, seconds.min(0.25), viewport, &extent.bounds());
         self.adaptive.moved(now);
     }
 
@@ -231,13 +234,16 @@ impl WindowRenderer {
     /// Makes the surface at the picked position the pivot, if there is one.
     fn pick(&mut self, state: &mut ViewState) -> Result<()> {
         let Some(at) = state.pick.take() else { return Ok(()) };
-        let depth = self.split_view.pick(at, state.viewport.size, &self.presenter)?;
-        if let (Some(depth), Some((_, camera, _))) = (depth, state.frame(Quality::FULL).transpose()?) {
-            let distance = camera.distance(depth)?;
-            state.set_pivot(at, distance);
+        if let Some(point) = self.surface_at(at, state.viewport.size)? {
+            state.set_pivot(point);
             self.window.request_redraw();
         }
         Ok(())
+    }
+
+    /// The surface point of the last frame at `at`, px in a picture of `size` px, in world space; `None` if there is none near it.
+    pub fn surface_at(&self, at: DVec2, size: [u32; 2]) -> Result<Option<DVec3>> {
+        self.split_view.surface_at(at, size, &self.presenter)
     }
 }
 

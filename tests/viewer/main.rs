@@ -1,6 +1,7 @@
 //! End-to-end tests of `surfel view`: a window on a virtual X server, real input events, files.
 #![cfg(target_os = "linux")]
 
+mod camera;
 mod comparison;
 mod display;
 mod faults;

@@ -78,13 +78,13 @@ impl App {
         let delta = to - self.input.cursor;
         self.input.cursor = to;
         let (button, shift) = (self.input.button, self.input.modifiers.shift_key());
-        let Some((orbit, viewport, extent)) = self.state.orbit_mut() else { return };
+        let Some((orbit, viewport, _)) = self.state.orbit_mut() else { return };
         match button {
             Some(MouseButton::Left) if !shift => orbit.turn(delta, viewport),
             Some(MouseButton::Left | MouseButton::Middle) => orbit.pan(delta, viewport),
             Some(MouseButton::Right) => {
-                let steps = -delta.y / PX_PER_STEP;
-                orbit.zoom(steps, viewport.centre(), None, viewport, &extent.bounds());
+                let centre = viewport.centre();
+                return self.zoom(-delta.y / PX_PER_STEP, centre);
             }
             _ => return,
         }
@@ -97,8 +97,19 @@ impl App {
             MouseScrollDelta::LineDelta(_, y) => f64::from(y),
             MouseScrollDelta::PixelDelta(delta) => delta.y / PX_PER_STEP,
         };
-        self.state.zoom(steps, self.input.cursor);
-        self.moved();
+        self.zoom(steps, self.input.cursor);
+    }
+
+    /// Zooms by steps of the wheel towards the surface at `at`, px.
+    fn zoom(&mut self, steps: f64, at: DVec2) {
+        let size = self.state.viewport.size;
+        match self.renderer.as_ref().map_or(Ok(None), |renderer| renderer.surface_at(at, size)) {
+            Ok(surface) => {
+                self.state.zoom(steps, at, surface);
+                self.moved();
+            }
+            Err(error) => self.show_error(&error),
+        }
     }
 
     /// Notes that the camera moves.

@@ -120,8 +120,11 @@ fn zooming_keeps_the_point_under_the_cursor() {
         let mut orbit = Orbit::framing(&(&bounds()).into(), Y_UP, &viewport);
         let (distance, surface) = (orbit.distance(), 0.7 * orbit.distance());
         let there = orbit.point(at, surface, &viewport);
-        orbit.zoom(3.0, at, Some(surface), &viewport, &bounds());
+        orbit.zoom(3.0, at, Some(there), &viewport, &bounds());
         assert!(near(project(&orbit, &viewport, there), at), "{viewport:?}");
+        assert!((orbit.pivot - there).length() < 1e-9, "the surface is the pivot");
+        // Under a parallel projection the pivot's distance is the scale, which the surface does not change.
+        let distance = if viewport.parallel { distance } else { surface };
         assert!((orbit.distance() / distance - STEP.powi(3)).abs() < 1e-12);
         // Zooming in parts, and back, gives the same.
         let mut steps = orbit;
@@ -192,10 +195,38 @@ fn flight_moves_the_pivot_too() {
     let mut orbit = Orbit::framing(&(&bounds()).into(), Y_UP, &VIEWPORT);
     let (eye, distance) = (orbit.eye, orbit.distance());
     let mut parts = orbit;
-    orbit.fly(DVec3::new(0.0, 0.0, 1.0), 0.5);
-    (0..5).for_each(|_| parts.fly(DVec3::new(0.0, 0.0, 1.0), 0.1));
+    orbit.fly(DVec3::Z, 0.5, &VIEWPORT, &bounds());
+    (0..5).for_each(|_| parts.fly(DVec3::Z, 0.1, &VIEWPORT, &bounds()));
     assert!((orbit.eye - parts.eye).length() < 1e-9, "independent of the frame rate");
     assert!(((orbit.eye - eye).length() - 0.5 * SPEED * distance).abs() < 1e-9);
+}
+
+#[test]
+fn flight_goes_on_close_to_a_surface_but_not_past_a_parallel_picture() {
+    for viewport in viewports() {
+        let mut orbit = Orbit::framing(&(&bounds()).into(), Y_UP, &viewport);
+        orbit.zoom(100.0, viewport.centre(), None, &viewport, &bounds());
+        let (eye, distance) = (orbit.eye, orbit.distance());
+        orbit.fly(DVec3::X, 1.0, &viewport, &bounds());
+        let least = if viewport.parallel { distance } else { FLIGHT_DISTANCE * bounds().radius };
+        assert!(least >= distance && (orbit.eye - eye).length() > 0.999 * SPEED * least, "{viewport:?}");
+    }
+}
+
+#[test]
+fn zooming_reaches_the_surface_wherever_the_pivot_is_and_never_passes_it() {
+    let at = DVec2::new(500.0, 60.0);
+    for (part, steps) in [(0.1, 24.0), (3.0, 48.0)] {
+        let mut orbit = Orbit::framing(&(&bounds()).into(), Y_UP, &VIEWPORT);
+        let wall = orbit.point(at, part * orbit.distance(), &VIEWPORT);
+        let far = orbit.distance_of(wall);
+        (0..steps as u32).for_each(|_| orbit.zoom(1.0, at, Some(wall), &VIEWPORT, &bounds()));
+        assert!((orbit.distance_of(wall) / far / STEP.powf(steps) - 1.0).abs() < 1e-6, "{part}");
+        // A surface behind the eye is none.
+        let behind = orbit;
+        orbit.zoom(1.0, at, Some(orbit.eye - (wall - orbit.eye)), &VIEWPORT, &bounds());
+        assert!((orbit.distance_of(wall) / behind.distance_of(wall) - STEP).abs() < 1e-6);
+    }
 }
 
 #[test]

@@ -1,0 +1,32 @@
+//! The camera of the window: zooming towards the surface under the cursor.
+
+use crate::program::surfels;
+use crate::setup;
+use crate::view::View;
+
+/// A wall of discs in the plane z = 0, from −4 to 4.
+fn wall() -> String {
+    let discs = (0..33).flat_map(|y| (0..33).map(move |x| [x, y].map(|i| f64::from(i) / 4.0 - 4.0)));
+    let discs: Vec<String> = discs.map(|[x, y]| format!("{x} {y} 0 0 0 1 0.3")).collect();
+    surfels(&discs.iter().map(String::as_str).collect::<Vec<_>>())
+}
+
+#[test]
+fn the_wheel_zooms_to_the_surface_under_the_cursor() {
+    let Some((display, program)) = setup("the_wheel_zooms_to_the_surface_under_the_cursor") else { return };
+    program.write("wall.ply", wall());
+    // The pivot is the target, 2 ahead of the eye; the wall is 8 ahead.
+    let mut view =
+        View::open(&display, &program, "wall.ply --size 400x300 --fresh --eye 0,0,8 --target 0,0,6");
+    let far = |event: &serde_json::Value| event["camera"]["eye"][2].as_f64().unwrap();
+    view.picture(|event| event["preview"] == false && far(event) == 8.0);
+    let mut before = 8.0;
+    for _ in 0..8 {
+        display.click(view.window, [200, 150], 4, 3);
+        before = far(&view.picture(|event| far(event) < before));
+    }
+    let after = view.picture(|event| event["moving"] == false);
+    // 24 steps, or twice as many where the server reports each twice.
+    assert!((1e-3..0.3).contains(&far(&after)), "{after}");
+    view.close();
+}
