@@ -38,13 +38,10 @@ const SETTLED: Duration = Duration::from_millis(400);
 /// Opens the window and runs it until it is closed.
 pub fn run(options: Options, load: Load, method_settings: MethodSettings) -> Result<()> {
     let events = EventLoop::<AppEvent>::with_user_event().build().map_err(no_display)?;
-    let saved = options.settings_file.as_deref().and_then(SavedSettings::read);
-    let mut ui_state = UiState::new(saved.as_ref().is_some_and(|saved| saved.panel_hidden));
+    let saved = options.settings_file.as_deref().and_then(SavedSettings::read).unwrap_or_default();
+    let mut ui_state = UiState::new(saved.panel_hidden);
     ui_state.loading = (!options.inputs.is_empty()).then_some(LOADING);
-    let legend = saved.as_ref().is_none_or(|saved| saved.legend);
-    let saved = saved.filter(|_| !options.method_chosen).and_then(|saved| saved.settings());
-    let mut state = ViewState::new(&options, method_settings, saved);
-    state.legend = legend;
+    let state = ViewState::new(&options, method_settings, saved.clone());
     let proxy = events.create_proxy();
     // A closed window takes no events.
     let sink = move |event| drop(proxy.send_event(event));
@@ -59,6 +56,7 @@ pub fn run(options: Options, load: Load, method_settings: MethodSettings) -> Res
     watcher.iter().for_each(|watcher| watcher.watch(&options.inputs));
     let mut app = App {
         state,
+        saved,
         input: InputState::default(),
         ui_state,
         loader,
@@ -92,6 +90,8 @@ fn no_display(error: winit::error::EventLoopError) -> Error {
 
 struct App {
     state: ViewState,
+    /// The settings of the last window.
+    saved: SavedSettings,
     input: InputState,
     ui_state: UiState,
     loader: Loader,
@@ -259,10 +259,11 @@ impl App {
         self.loader.start(changed, true);
     }
 
-    fn save_settings(&self) {
-        let saved = SavedSettings::of(&self.state, &self.ui_state);
-        let Some((path, saved)) = self.options.settings_file.as_ref().zip(saved) else { return };
-        if let Err(error) = saved.write(path) {
+    /// Writes what the user has changed for the next window, if anything.
+    fn save_settings(&mut self) {
+        let new = self.state.settings_to_save(self.ui_state.panel_hidden);
+        let Some(path) = self.options.settings_file.as_ref().filter(|_| new != self.saved) else { return };
+        if let Err(error) = new.write(path) {
             log::warn!("the settings are not saved: {error}");
         }
     }

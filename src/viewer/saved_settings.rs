@@ -1,8 +1,7 @@
 //! Saved settings: method, render settings and panel, kept from one run to the next.
 
-use super::panels::UiState;
-use super::state::ViewState;
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 use surfel::formats::atomic;
@@ -11,6 +10,9 @@ use surfel::settings::pull_push::{PullPush, Storage};
 use surfel::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
 use surfel::settings::{Alpha, Choice, Cull, Edges, Shading, Widen};
 use surfel::{Error, Result, Settings};
+
+/// Names of the fields that do not depend on the method.
+const OF_PICTURES: [&str; 5] = ["alpha", "shading", "edl", "ao", "background"];
 
 /// Method and settings, by the names of the command line's options.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -73,10 +75,43 @@ impl SavedSettings {
         usable.then_some(saved).ok_or_else(|| unusable("it holds unknown names or invalid values".into()))
     }
 
-    /// The settings of the view, for any scene; `None` if no scene is shown.
-    pub fn of(state: &ViewState, ui_state: &UiState) -> Option<Self> {
-        let ([method, _], settings) = state.names().zip(state.settings_to_save())?;
-        Some(Self::of_settings(method, &settings, [ui_state.panel_hidden, state.legend]))
+    /// These settings with what the user has changed from the `first` method and settings of a scene to those of `now`. `given` are the settings
+    /// that the present method has if nobody changes them.
+    ///
+    /// A method that the inputs or the command line require is not kept, and neither are its settings.
+    pub fn with_changes(
+        &self,
+        first: (Method, &Settings),
+        now: (Method, &Settings),
+        given: &Settings,
+    ) -> Self {
+        let panel = [self.panel_hidden, self.legend];
+        let fields =
+            |method: Method, settings: &Settings| Self::of_settings(method.name, settings, panel).fields();
+        let (is_chosen, own) = (first.0.name != now.0.name, self.method == now.0.name);
+        let (before, after) = (fields(first.0, first.1), fields(now.0, now.1));
+        let unchanged = if is_chosen { fields(now.0, given) } else { before.clone() };
+        let mut kept = self.fields();
+        if is_chosen {
+            let preset = fields(now.0, &now.0.settings());
+            kept.extend(preset.into_iter().filter(|(name, _)| !is_of_pictures(name)));
+        }
+        let changed = after.into_iter().filter(|(name, value)| {
+            let (is_kept, old) =
+                if is_of_pictures(name) { (true, &before) } else { (is_chosen || own, &unchanged) };
+            is_kept && old.get(name) != Some(value)
+        });
+        kept.extend(changed);
+        let kept = serde_json::from_value(Value::Object(kept)).ok();
+        kept.filter(|kept: &Self| kept.settings().is_some()).unwrap_or_else(|| self.clone())
+    }
+
+    /// The fields of the file.
+    fn fields(&self) -> Map<String, Value> {
+        match serde_json::to_value(self) {
+            Ok(Value::Object(fields)) => fields,
+            _ => Map::new(),
+        }
     }
 
     fn of_settings(method: &str, settings: &Settings, [panel_hidden, legend]: [bool; 2]) -> Self {
@@ -161,6 +196,17 @@ impl SavedSettings {
     }
 }
 
+impl Default for SavedSettings {
+    fn default() -> Self {
+        let method = Method::ALL[0];
+        Self::of_settings(method.name, &method.settings(), [false, true])
+    }
+}
+
+fn is_of_pictures(field: &str) -> bool {
+    OF_PICTURES.contains(&field)
+}
+
 /// Edges of files that do not contain them.
 fn nearest() -> String {
     Edges::Nearest.name().into()
@@ -218,6 +264,45 @@ mod tests {
             assert_eq!((method.name, found), (name, settings));
             assert_eq!([read.panel_hidden, read.legend], [true, false]);
         }
+    }
+
+    #[test]
+    fn what_the_user_changes_is_kept_and_nothing_else() {
+        let saved = SavedSettings::default();
+        let [own, ewa, pull] = ["perspective-ewa", "object-ewa", "pull-push"].map(|name| {
+            let method = Method::named(name).unwrap();
+            (method, method.settings())
+        });
+        let kept = |saved: &SavedSettings, from: &(Method, Settings), to: &(Method, Settings)| {
+            let given = Settings { cutoff: 2.0, ..to.0.settings() };
+            saved.with_changes((from.0, &from.1), (to.0, &to.1), &given)
+        };
+        let with = |of: &(Method, Settings), change: fn(&mut Settings)| {
+            let mut settings = of.1.clone();
+            change(&mut settings);
+            (of.0, settings)
+        };
+        // A required method, a shading of the command line.
+        let depth = with(&pull, |settings| settings.shading = Shading::Depth);
+        assert_eq!(kept(&saved, &depth, &depth), saved);
+        let white = with(&depth, |settings| settings.background = Some([1.0; 3]));
+        assert_eq!(
+            kept(&saved, &depth, &white),
+            SavedSettings { background: Some([1.0; 3]), ..saved.clone() }
+        );
+        // A method that was chosen, with a cut-off of the command line.
+        let cut = with(&ewa, |settings| settings.cutoff = 2.0);
+        let chosen = kept(&saved, &own, &cut);
+        assert_eq!(chosen, SavedSettings::of_settings("object-ewa", &ewa.1, [false, true]));
+        let deep = with(&cut, |settings| settings.epsilon = 3.0);
+        assert_eq!(kept(&saved, &own, &deep).settings().unwrap().1, Settings { epsilon: 3.0, ..ewa.1 });
+        assert_eq!(kept(&chosen, &cut, &deep), kept(&saved, &own, &deep));
+        // The method stays after a scene of lines, and its settings, too.
+        assert_eq!(kept(&chosen, &pull, &pull), chosen);
+        let in_turns = with(&pull, |settings| {
+            settings.pull_push.iter_mut().for_each(|pull| pull.storage = Storage::PingPong);
+        });
+        assert_eq!(kept(&chosen, &pull, &in_turns), chosen);
     }
 
     #[test]

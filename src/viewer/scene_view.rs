@@ -39,6 +39,8 @@ pub struct SceneView {
     pub framed: Orbit,
     /// A camera that was set, with the orbit and the viewport made of it. The scene is seen from exactly this pose until the user moves the camera.
     pub given: Option<(Orbit, Viewport, Pose)>,
+    /// Method and settings when the scene came: what differs from these the user has changed.
+    pub first: (Method, Settings),
     pub method: Method,
     pub settings: Settings,
 }

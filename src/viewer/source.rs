@@ -120,14 +120,6 @@ impl Source {
         Settings { shading: shading.unwrap_or(settings.shading), ao: ao.unwrap_or(settings.ao), ..settings }
     }
 
-    /// The usual shading and ambient occlusion instead of the scene's first ones: the settings for any scene.
-    pub fn unshaded(&self, settings: Settings) -> Settings {
-        let usual = Settings::default();
-        let shading = self.shading.filter(|first| settings.shading == *first).map(|_| usual.shading);
-        let ao = self.ao.filter(|first| settings.ao == *first).map(|_| usual.ao);
-        Settings { shading: shading.unwrap_or(settings.shading), ao: ao.unwrap_or(settings.ao), ..settings }
-    }
-
     /// What a camera frames.
     pub fn extent(&self) -> &Extent {
         &self.extent

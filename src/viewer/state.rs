@@ -6,6 +6,7 @@ use super::keys::Action;
 use super::open_dialog::{DialogResult, OpenDialog};
 use super::orbit::Orbit;
 use super::quality::{Quality, Workload};
+use super::saved_settings::SavedSettings;
 use super::scene_view::{SceneOrigin, SceneView, can_render};
 use super::source::Source;
 use super::viewport::Viewport;
@@ -29,7 +30,9 @@ pub struct ViewState {
     method_settings: MethodSettings,
     pub rasterizer: RasterizerChoice,
     /// Method and settings saved by the last run, until the first scene that can be rendered with them.
-    saved: Option<(Method, Settings)>,
+    start: Option<(Method, Settings)>,
+    /// What the next window starts with, without the changes of the scene that is shown.
+    to_save: SavedSettings,
     /// Version of the scene's contents; rises with every change.
     version: u64,
     view: Option<SceneView>,
@@ -52,19 +55,17 @@ pub struct ViewState {
 type FrameInputs<'a> = (&'a Arc<Scene>, Camera, Settings);
 
 impl ViewState {
-    /// The state of an empty window.
-    pub fn new(
-        options: &Options,
-        method_settings: MethodSettings,
-        saved: Option<(Method, Settings)>,
-    ) -> Self {
+    /// The state of an empty window, which starts with the settings of the last one.
+    pub fn new(options: &Options, method_settings: MethodSettings, saved: SavedSettings) -> Self {
         let viewport = Viewport { size: options.size, fov_y_deg: options.fov_y_deg, parallel: false };
         Self {
             viewport,
             up: nearest_axis(DVec3::Y),
             method_settings,
             rasterizer: options.rasterizer.into(),
-            saved,
+            start: saved.settings().filter(|_| !options.method_chosen),
+            legend: saved.legend,
+            to_save: saved,
             version: 0,
             view: None,
             lost: None,
@@ -72,7 +73,6 @@ impl ViewState {
             dialog: None,
             dialog_result: None,
             cancel: false,
-            legend: true,
             filter: options.filter.clone(),
         }
     }
@@ -84,6 +84,7 @@ impl ViewState {
         (method, mut source): (Method, Source),
         origin: SceneOrigin,
     ) {
+        self.keep_changes();
         // A scene after its preview, and a reloaded one, keep what the user has chosen.
         let is_new =
             !origin.reload && self.view.as_ref().is_none_or(|view| view.origin != origin.of_preview());
@@ -97,12 +98,12 @@ impl ViewState {
             (method, settings)
         });
         let (method, settings) = lost.unwrap_or_else(|| {
-            let saved = self.saved.take_if(|saved| can_render(&scene, &saved.1));
+            let saved = self.start.take_if(|saved| can_render(&scene, &saved.1));
             let (method, settings) = saved.unwrap_or_else(|| (method, (self.method_settings)(&method)));
             (method, source.shaded(settings))
         });
         if !origin.preview {
-            self.saved = None;
+            self.start = None;
         }
         self.view = Some(match self.view.take() {
             Some(preview) if preview.origin == origin.of_preview() => {
@@ -111,12 +112,14 @@ impl ViewState {
                 let (method, settings) = preview.method_for(&scene, (method, settings));
                 let settings = source.shaded(settings);
                 let before = None;
-                SceneView { scene, source, origin, orbit, framed, before, method, settings, ..preview }
+                let first = (method, settings.clone());
+                SceneView { scene, source, origin, orbit, framed, before, first, method, settings, ..preview }
             }
             Some(view) if origin.reload && !view.origin.preview => {
                 source.restore(&view.source.saved_appearance());
                 let (method, settings) = view.method_for(&scene, (method, settings));
-                SceneView { scene, source, origin, method, settings, ..view }
+                let first = (method, settings.clone());
+                SceneView { scene, source, origin, first, method, settings, ..view }
             }
             before => {
                 // Before a preview, the last whole scene is kept.
@@ -125,7 +128,8 @@ impl ViewState {
                 };
                 let before = before.filter(|_| origin.preview).and_then(whole);
                 let orbit = framed;
-                SceneView { scene, source, origin, before, orbit, framed, given, method, settings }
+                let first = (method, settings.clone());
+                SceneView { scene, source, origin, before, orbit, framed, given, first, method, settings }
             }
         });
     }
@@ -135,9 +139,19 @@ impl ViewState {
         self.view.as_ref().map(|view| &view.settings)
     }
 
-    /// The settings for the next run, with any scene.
-    pub fn settings_to_save(&self) -> Option<Settings> {
-        self.view.as_ref().map(|view| view.source.unshaded(view.settings.clone()))
+    /// Keeps for the next window what the user has changed since the scene is shown.
+    fn keep_changes(&mut self) {
+        let Some(SceneView { first, method, settings, .. }) = &self.view else { return };
+        let given = (self.method_settings)(method);
+        self.to_save = self.to_save.with_changes((first.0, &first.1), (*method, settings), &given);
+    }
+
+    /// What the next window starts with.
+    pub fn settings_to_save(&mut self, panel_hidden: bool) -> SavedSettings {
+        self.keep_changes();
+        let mut saved = self.to_save.clone();
+        (saved.panel_hidden, saved.legend) = (panel_hidden, self.legend);
+        saved
     }
 
     /// Version of the scene's contents.
@@ -170,6 +184,7 @@ impl ViewState {
 
     /// Drops the scene, whose device is lost. If the next scene is the `same`, it keeps settings and appearance; returns its camera then.
     pub fn leave_device(&mut self, same: bool) -> Option<Pose> {
+        self.keep_changes();
         let pose = self.pose().filter(|_| same);
         let lost = self.view.take().filter(|_| same);
         let lost = lost.map(|view| (view.method, view.settings, view.source.saved_appearance()));
@@ -339,77 +354,4 @@ fn nearest_axis(up: DVec3) -> Up {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::viewer::directions::ViewDirection;
-    use crate::viewer::tests::device;
-    use crate::viewer::{Events, Loaded, SaveFolder};
-    use std::time::Instant;
-    use surfel::frame::faster::FasterRasterizers;
-    use surfel::geometry::Surfels;
-    use surfel::verify::scenes;
-    use surfel::vk::DeviceOptions;
-
-    fn state() -> ViewState {
-        let options = Options {
-            inputs: Vec::new(),
-            filter: Filter::default(),
-            size: [640, 480],
-            device: DeviceOptions::default(),
-            rasterizer: None,
-            faster: FasterRasterizers::default(),
-            budget: 60.0,
-            fov_y_deg: 45.0,
-            initial_camera: Box::new(|_, _, _| None),
-            watch: false,
-            events: Events::new(Instant::now(), false),
-            save_folder: SaveFolder { path: ".".into(), print_names: false },
-            settings_file: None,
-            method_chosen: false,
-        };
-        ViewState::new(&options, Box::new(Method::settings), None)
-    }
-
-    fn origin(load: u64, preview: bool) -> SceneOrigin {
-        SceneOrigin { load, preview, reload: false }
-    }
-
-    #[test]
-    fn a_preview_gives_way_to_the_scene_before_or_to_the_whole_scene() {
-        let Some(device) = device("a_preview_gives_way_to_the_scene_before_or_to_the_whole_scene") else {
-            return;
-        };
-        let scene = |points: u32| {
-            let sphere = scenes::open(&format!("scene:sphere?points={points}")).unwrap();
-            Arc::new(Scene::upload(&device, &sphere).unwrap())
-        };
-        let loaded = || (Method::ALL[0], Source::new(Loaded::new(Surfels::default().into(), Method::ALL[0])));
-        let surfels = |state: &ViewState| state.scene_and_settings().map(|(scene, _)| scene.count());
-        let mut state = state();
-        state.set_scene(scene(10), loaded(), origin(1, true));
-        assert_eq!((surfels(&state), state.is_preview()), (Some(10), true));
-        state.leave_preview();
-        assert_eq!(surfels(&state), None, "nothing was shown before");
-        state.set_scene(scene(10), loaded(), origin(2, true));
-        let eye = |state: &mut ViewState| state.orbit_mut().unwrap().0.eye;
-        // The whole scene keeps the camera that was moved before its preview.
-        let (orbit, ..) = state.orbit_mut().unwrap();
-        orbit.view_from(ViewDirection::Top);
-        let above = eye(&mut state);
-        state.set_scene(scene(100), loaded(), origin(2, false));
-        assert_eq!((surfels(&state), state.is_preview(), eye(&mut state)), (Some(100), false, above));
-        state.set_scene(scene(10), loaded(), origin(3, true));
-        state.set_scene(scene(20), loaded(), origin(4, true));
-        assert_ne!(eye(&mut state), above);
-        state.leave_preview();
-        assert_eq!((surfels(&state), eye(&mut state)), (Some(100), above));
-        // A reloaded scene keeps the camera.
-        state.set_scene(scene(50), loaded(), SceneOrigin { load: 5, preview: false, reload: true });
-        assert_eq!((surfels(&state), eye(&mut state)), (Some(50), above));
-        state.set_levels(scene(40));
-        assert_eq!((surfels(&state), eye(&mut state)), (Some(40), above));
-        state.set_scene(scene(30), loaded(), origin(6, false));
-        assert_eq!(surfels(&state), Some(30));
-        assert_ne!(eye(&mut state), above);
-    }
-}
+pub mod tests;

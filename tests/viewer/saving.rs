@@ -240,3 +240,38 @@ fn apart(of_file: [u8; 4], of_window: [u8; 3]) -> u8 {
         _ => 0,
     }
 }
+
+#[test]
+fn the_next_window_starts_with_what_the_user_changed_in_this_one() {
+    let test = "the_next_window_starts_with_what_the_user_changed_in_this_one";
+    let Some((display, program)) = setup(test) else { return };
+    let properties =
+        ["float x", "float y", "float z", "float radius"].map(|name| format!("property {name}\n"));
+    let edges = "element edge 1\nproperty int vertex1\nproperty int vertex2\nend_header";
+    let header = format!("ply\nformat ascii 1.0\nelement vertex 2\n{}{edges}", properties.concat());
+    program.write("lines.ply", format!("{header}\n0 0 0 0.1\n1 1 0 0.1\n0 1\n"));
+    // Each window: its options, the keys that are typed in it, and the method and the shading that it starts with.
+    let options = format!("{SPHERE} --method sprites --shading depth --background white");
+    for (what, keys, method, shading) in [
+        (SPHERE, "m", "perspective-ewa", "lit"),
+        ("lines.ply", "", "pull-push", "lit"),
+        (options.as_str(), "", "sprites", "depth"),
+        (SPHERE, "lg", "object-ewa", "lit"),
+        (SPHERE, "g", "object-ewa", "color"),
+    ] {
+        let mut view = View::open(&display, &program, &format!("{what} --size 640x480 -q"));
+        let first = view.picture(|_| true);
+        assert_eq!([&first["method"], &first["shading"]], [method, shading], "{what}");
+        let hidden = first["picture"][0] == 640;
+        assert_eq!(hidden, keys == "g", "{what}: whether the panel is hidden");
+        display.type_text(keys);
+        if !keys.is_empty() {
+            let names = |event: &Value| ["method", "shading", "picture"].map(|name| event[name].clone());
+            view.picture(|event| names(event) != names(&first));
+        }
+        view.close();
+    }
+    let file = std::fs::read(program.path(".config/surfel/viewer.json")).unwrap();
+    let saved: Value = serde_json::from_slice(&file).unwrap();
+    assert_eq!([&saved["hidden"], &saved["background"]], [&Value::from(false), &Value::Null]);
+}

@@ -43,7 +43,7 @@ impl App {
                 self.changed();
             }
             Action::Panels => {
-                self.ui_state.panel_hidden = !self.ui_state.panel_hidden;
+                self.ui_state.toggle_panel();
                 self.lay_out();
                 self.changed();
             }

@@ -5,6 +5,7 @@ mod buffers;
 mod error;
 mod filter;
 mod help;
+mod hint;
 mod histogram;
 mod kernel;
 mod legend;
@@ -66,6 +67,9 @@ pub fn show(ui: &mut Ui, state: &mut ViewState, ui_state: &mut UiState, device: 
         Some(_) => legend::show(ui, free, picture, state, ui_state),
         None if ui_state.loading.is_none() => start::show(ui, free, state, &ui_state.layout),
         None => {}
+    }
+    if ui_state.panel_hidden && MAX_PART * whole.width() >= WIDTH[0] {
+        ui_state.hint.show(ui, free, &ui_state.layout);
     }
     ui_state.errors.window.show(ui.ctx(), "error");
     ui_state.buffers.window.show(ui.ctx(), "buffer");

@@ -2,6 +2,7 @@
 
 use super::buffers::Buffers;
 use super::error::Errors;
+use super::hint::Hint;
 use super::split::Split;
 use super::times::Times;
 use crate::viewer::events::Event;
@@ -38,6 +39,8 @@ pub struct UiState {
     pub layout: Layout,
     /// Whether the panel beside the picture is hidden.
     pub panel_hidden: bool,
+    /// Tells how it comes back.
+    pub(super) hint: Hint,
     /// Times of the last frames.
     pub times: Times,
     pub(super) errors: Errors,
@@ -48,7 +51,13 @@ pub struct UiState {
 impl UiState {
     /// The state at the start; the panel may be hidden.
     pub fn new(panel_hidden: bool) -> Self {
-        Self { panel_hidden, ..Self::default() }
+        Self { panel_hidden, hint: Hint::new(panel_hidden), ..Self::default() }
+    }
+
+    /// Hides or shows the panel beside the picture.
+    pub fn toggle_panel(&mut self) {
+        self.panel_hidden = !self.panel_hidden;
+        self.hint = Hint::new(self.panel_hidden);
     }
 
     /// Closes the window on top of the picture; returns whether there was one.

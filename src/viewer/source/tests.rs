@@ -134,15 +134,9 @@ fn a_scene_is_shaded_by_its_first_shading_unless_another_was_chosen() {
     assert_eq!(dark.shaded(with(Shading::Lit)).shading, Shading::Edl);
     assert_eq!(dark.shaded(with(Shading::Normal)).shading, Shading::Normal);
     assert_eq!(plain.shaded(with(Shading::Lit)).shading, Shading::Lit);
-    // The next scene is not shaded by the first shading of this one, but by what was chosen.
-    assert_eq!(dark.unshaded(with(Shading::Edl)).shading, Shading::Lit);
-    assert_eq!(plain.unshaded(with(Shading::Edl)).shading, Shading::Edl);
     // So with ambient occlusion.
     let (foliage, occluded) =
         (source(Some(Shading::Lit), Some(1.0)), |ao| Settings { ao, ..with(Shading::Lit) });
     assert_eq!(foliage.shaded(occluded(0.0)), occluded(1.0));
     assert_eq!(foliage.shaded(occluded(0.5)), occluded(0.5));
-    assert_eq!(foliage.unshaded(occluded(1.0)), occluded(0.0));
-    assert_eq!(foliage.unshaded(occluded(0.5)), occluded(0.5));
-    assert_eq!(dark.unshaded(Settings { ao: 2.0, ..with(Shading::Edl) }), occluded(2.0));
 }

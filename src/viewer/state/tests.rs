@@ -1,0 +1,76 @@
+//! Tests of the view state.
+
+use super::*;
+use crate::viewer::directions::ViewDirection;
+use crate::viewer::tests::device;
+use crate::viewer::{Events, Loaded, SaveFolder};
+use std::time::Instant;
+use surfel::frame::faster::FasterRasterizers;
+use surfel::geometry::Surfels;
+use surfel::verify::scenes;
+use surfel::vk::DeviceOptions;
+
+/// The state of an empty window.
+pub fn state() -> ViewState {
+    let options = Options {
+        inputs: Vec::new(),
+        filter: Filter::default(),
+        size: [640, 480],
+        device: DeviceOptions::default(),
+        rasterizer: None,
+        faster: FasterRasterizers::default(),
+        budget: 60.0,
+        fov_y_deg: 45.0,
+        initial_camera: Box::new(|_, _, _| None),
+        watch: false,
+        events: Events::new(Instant::now(), false),
+        save_folder: SaveFolder { path: ".".into(), print_names: false },
+        settings_file: None,
+        method_chosen: false,
+    };
+    ViewState::new(&options, Box::new(Method::settings), SavedSettings::default())
+}
+
+/// The origin of a scene that is no reload.
+pub fn origin(load: u64, preview: bool) -> SceneOrigin {
+    SceneOrigin { load, preview, reload: false }
+}
+
+#[test]
+fn a_preview_gives_way_to_the_scene_before_or_to_the_whole_scene() {
+    let Some(device) = device("a_preview_gives_way_to_the_scene_before_or_to_the_whole_scene") else {
+        return;
+    };
+    let scene = |points: u32| {
+        let sphere = scenes::open(&format!("scene:sphere?points={points}")).unwrap();
+        Arc::new(Scene::upload(&device, &sphere).unwrap())
+    };
+    let loaded = || (Method::ALL[0], Source::new(Loaded::new(Surfels::default().into(), Method::ALL[0])));
+    let surfels = |state: &ViewState| state.scene_and_settings().map(|(scene, _)| scene.count());
+    let mut state = state();
+    state.set_scene(scene(10), loaded(), origin(1, true));
+    assert_eq!((surfels(&state), state.is_preview()), (Some(10), true));
+    state.leave_preview();
+    assert_eq!(surfels(&state), None, "nothing was shown before");
+    state.set_scene(scene(10), loaded(), origin(2, true));
+    let eye = |state: &mut ViewState| state.orbit_mut().unwrap().0.eye;
+    // The whole scene keeps the camera that was moved before its preview.
+    let (orbit, ..) = state.orbit_mut().unwrap();
+    orbit.view_from(ViewDirection::Top);
+    let above = eye(&mut state);
+    state.set_scene(scene(100), loaded(), origin(2, false));
+    assert_eq!((surfels(&state), state.is_preview(), eye(&mut state)), (Some(100), false, above));
+    state.set_scene(scene(10), loaded(), origin(3, true));
+    state.set_scene(scene(20), loaded(), origin(4, true));
+    assert_ne!(eye(&mut state), above);
+    state.leave_preview();
+    assert_eq!((surfels(&state), eye(&mut state)), (Some(100), above));
+    // A reloaded scene keeps the camera.
+    state.set_scene(scene(50), loaded(), SceneOrigin { load: 5, preview: false, reload: true });
+    assert_eq!((surfels(&state), eye(&mut state)), (Some(50), above));
+    state.set_levels(scene(40));
+    assert_eq!((surfels(&state), eye(&mut state)), (Some(40), above));
+    state.set_scene(scene(30), loaded(), origin(6, false));
+    assert_eq!(surfels(&state), Some(30));
+    assert_ne!(eye(&mut state), above);
+}
