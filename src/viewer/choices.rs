@@ -1,9 +1,10 @@
 //! What the panels let the user choose.
 
 use super::MethodSettings;
+use super::quality::Quality;
 use super::scene_view::with_picture_of;
 use super::source::Source;
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 use surfel::formats::Filter;
 use surfel::geometry::Camera;
 use surfel::settings::methods::Method;
@@ -25,6 +26,8 @@ pub struct Choices<'a> {
     /// Whether the surfels have normalization weights.
     pub weighted: bool,
     pub scene: &'a Arc<Scene>,
+    /// Version of the scene's contents.
+    pub version: u64,
     pub camera: Option<Result<Camera>>,
     /// Width and height of the window's picture, px.
     pub size: [u32; 2],
@@ -32,7 +35,39 @@ pub struct Choices<'a> {
     pub method_settings: &'a MethodSettings,
 }
 
+/// What determines a picture of full quality: with the same content the picture is the same.
+#[derive(Clone)]
+pub struct PictureContent {
+    /// Tells scenes apart without keeping them.
+    scene: Weak<Scene>,
+    version: u64,
+    pub camera: Camera,
+    pub settings: Settings,
+    /// Width and height, px.
+    pub size: [u32; 2],
+}
+
+impl PartialEq for PictureContent {
+    fn eq(&self, other: &Self) -> bool {
+        Weak::ptr_eq(&self.scene, &other.scene)
+            && (self.version, self.camera, self.size) == (other.version, other.camera, other.size)
+            && self.settings == other.settings
+    }
+}
+
 impl Choices<'_> {
+    /// The content of the window's picture at full quality; `None` if there is no camera for it.
+    pub fn content(&self) -> Option<PictureContent> {
+        let Some(Ok(camera)) = &self.camera else { return None };
+        Some(PictureContent {
+            scene: Arc::downgrade(self.scene),
+            version: self.version,
+            camera: *camera,
+            settings: Quality::FULL.settings(self.settings),
+            size: self.size,
+        })
+    }
+
     /// Changes the method; shading, background and α stay.
     pub fn choose(&mut self, method: Method) {
         *self.settings = self.settings_of(&method);

@@ -1,12 +1,13 @@
 //! Comparison of the picture with the float64 reference or with the exact surface.
 
+use super::choices::PictureContent;
 use super::exact_surface::ExactSurface;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use surfel::geometry::{Camera, Model};
+use surfel::geometry::{Levels, Model, Parts};
 use surfel::verify::{metrics, reference, truth};
 use surfel::vk::Device;
-use surfel::{Error, Picture, Progress, RenderOptions, Renderer, Result, Scene, Settings};
+use surfel::{Error, Picture, Progress, RenderOptions, Renderer, Result, Scene};
 
 /// What the picture is compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,20 +52,15 @@ pub struct Task {
     pub truth: Truth,
     pub device: Arc<Device>,
     pub scene: Arc<Scene>,
-    pub camera: Camera,
-    pub settings: Settings,
-    /// Width and height, px.
-    pub size: [u32; 2],
+    pub content: PictureContent,
     pub options: RenderOptions,
 }
 
 /// Result of a comparison.
 pub struct Comparison {
     pub against: Against,
-    pub camera: Camera,
-    pub settings: Settings,
-    /// Width and height, px.
-    pub size: [u32; 2],
+    /// Of the picture that was compared.
+    pub content: PictureContent,
     /// Of linear colours over the background.
     pub rmse: f64,
     /// The largest difference of a channel of each pixel.
@@ -85,15 +81,15 @@ impl Task {
     pub fn run(self, progress: &dyn Progress) -> Result<Comparison> {
         let (picture, _) = Renderer::new(&self.device, self.options)?.render_picture(
             &self.scene,
-            &self.camera,
-            &self.settings,
+            &self.content.camera,
+            &self.content.settings,
         )?;
         let Rendered { picture: truth, standard_error, took } = self.render_truth(progress)?;
         if progress.is_cancelled() {
             return Err(Error::Cancelled);
         }
-        let Self { truth: against, camera, settings, size, .. } = self;
-        let over = settings.background.unwrap_or_default();
+        let Self { truth: against, content, .. } = self;
+        let (size, over) = (content.size, content.settings.background.unwrap_or_default());
         let [picture, truth] = [picture, truth].map(|picture| composite(&picture, over));
         let rmse = metrics::rmse::rmse(&picture, &truth);
         let errors = differences(&picture, &truth);
@@ -104,16 +100,23 @@ impl Task {
             Truth::Reference(_) => Against::Reference,
             Truth::Surface(_) => Against::Surface,
         };
-        Ok(Comparison { against, camera, settings, size, rmse, errors, worst, standard_error, took })
+        Ok(Comparison { against, content, rmse, errors, worst, standard_error, took })
     }
 
     /// Renders what the picture is compared with. The time is without reading triangles.
     fn render_truth(&self, progress: &dyn Progress) -> Result<Rendered> {
-        let Self { camera, settings, size, .. } = self;
+        let PictureContent { camera, settings, size, .. } = &self.content;
         match &self.truth {
             Truth::Reference(model) => {
+                // Of the surfels that stand for several points, too, if the scene has them.
+                let detailed = self.scene.level_table().is_some();
+                let levels = detailed.then(|| Levels::build(model.surfels.clone(), progress)).transpose()?;
+                let mut parts = Parts::from(&**model);
+                if let Some(levels) = &levels {
+                    (parts.surfels, parts.levels) = (&levels.surfels, Some(&levels.table));
+                }
                 let start = Instant::now();
-                let picture = reference::render(&**model, camera, *size, settings, progress)?.to_picture();
+                let picture = reference::render(parts, camera, *size, settings, progress)?.to_picture();
                 Ok(Rendered { picture, standard_error: None, took: start.elapsed() })
             }
             Truth::Surface(surface) => {
@@ -148,6 +151,36 @@ fn differences(a: &[[f64; 3]], b: &[[f64; 3]]) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::viewer::Loaded;
+    use crate::viewer::levels::upload_with;
+    use crate::viewer::source::Source;
+    use crate::viewer::state::tests::{origin, state};
+    use crate::viewer::tests::device;
+    use surfel::geometry::SurfelFormat;
+    use surfel::settings::methods::Method;
+    use surfel::verify::scenes;
+
+    #[test]
+    fn surfels_that_stand_for_several_points_are_compared_with_the_reference_of_them() {
+        let test = "surfels_that_stand_for_several_points_are_compared_with_the_reference_of_them";
+        let Some(device) = device(test) else { return };
+        let (model, method) = (scenes::model("scene:bumpy-sphere?points=60000").unwrap(), Method::ALL[0]);
+        let scene = upload_with(&device, &model, SurfelFormat::default(), &()).unwrap();
+        assert!(scene.level_table().is_some());
+        let mut state = state();
+        state.viewport.size = [64, 48];
+        state.set_scene(scene, (method, Source::new(Loaded::new(model, method))), origin(1, false));
+        let choices = state.choices().unwrap();
+        let task = Task {
+            truth: Truth::Reference(choices.source.visible_model()),
+            device,
+            scene: choices.scene.clone(),
+            content: choices.content().unwrap(),
+            options: RenderOptions { size: choices.size, ..Default::default() },
+        };
+        let found = task.run(&()).unwrap();
+        assert!(found.rmse < 1e-4, "{}", found.rmse);
+    }
 
     #[test]
     fn pictures_are_composited_and_the_largest_difference_counts() {

@@ -300,7 +300,7 @@ impl ViewState {
     /// What the panels let the user choose, if a scene is shown.
     pub fn choices(&mut self) -> Option<Choices<'_>> {
         let camera = self.frame(Quality::FULL).map(|frame| frame.map(|(_, camera, _)| camera));
-        let Self { view, viewport, method_settings, rasterizer, filter, legend, .. } = self;
+        let Self { view, viewport, method_settings, rasterizer, filter, legend, version, .. } = self;
         let SceneView { method, settings, scene, source, .. } = view.as_mut()?;
         let streams = scene.streams();
         Some(Choices {
@@ -312,6 +312,7 @@ impl ViewState {
             primitives: streams.primitives.any(),
             weighted: streams.weights.is_some(),
             scene,
+            version: *version,
             camera,
             size: viewport.size,
             parallel: &mut viewport.parallel,

@@ -47,6 +47,28 @@ fn screenshots_equal_those_of_render_and_the_window() {
     view.close();
 }
 
+#[test]
+fn a_saved_picture_has_the_level_of_detail_of_the_window() {
+    let Some((display, program)) = setup("a_saved_picture_has_the_level_of_detail_of_the_window") else {
+        return;
+    };
+    // Several points share a pixel.
+    let what = format!("scene:bumpy-sphere?points=60000 --size 120x90 {DRAW}");
+    let mut view = View::open(&display, &program, &format!("{what} -q --screenshots ."));
+    view.picture(|event| event["preview"] == false);
+    display.press(&[key::CONTROL], u32::from('s'));
+    let camera = view.wrote();
+    display.press(&[], key::F12);
+    let saved = program.png(&view.wrote());
+    view.close();
+    let headless = |lod: &str| {
+        program.run(&format!("render {what} --camera {camera} {lod} -o headless.png")).text();
+        program.png("headless.png")
+    };
+    assert!(saved == headless("--lod 1"), "not what `render --lod 1` writes");
+    assert!(saved != headless(""), "it has no levels of detail");
+}
+
 /// Width and height of the picture of an event, px.
 fn picture_size(event: &Value) -> [u32; 2] {
     [0, 1].map(|axis| event["picture"][axis].as_u64().unwrap() as u32)

@@ -2,10 +2,9 @@
 
 use super::raster::{Raster, RasterWindow, Values};
 use super::widgets::combo;
-use crate::viewer::choices::Choices;
+use crate::viewer::choices::{Choices, PictureContent};
 use egui::{Button, Slider, Ui};
 use std::sync::Arc;
-use surfel::geometry::Camera;
 use surfel::settings::Shading;
 use surfel::vk::Device;
 use surfel::{Outputs, PyramidLevel, RenderOptions, Renderer, Result, Settings};
@@ -54,7 +53,7 @@ pub struct Buffers {
     error: Option<String>,
     pub(super) window: RasterWindow,
     /// The picture that the buffer belongs to.
-    read_for: Option<(Camera, Settings, Buffer, u32)>,
+    read_for: Option<(PictureContent, Buffer, u32)>,
 }
 
 impl Buffers {
@@ -78,16 +77,18 @@ impl Buffers {
                 "Level 0 has the resolution of the picture, each further level a quarter of its pixels.",
             );
         }
-        let Some(Ok(camera)) = &choices.camera else { return };
-        let key = (*camera, choices.settings.clone(), self.buffer, self.level);
+        let Some(content) = choices.content() else { return };
+        let key = (content, self.buffer, self.level);
         let old = self.window.open && self.read_for.as_ref() != Some(&key);
         let text = if old { "Read back again: an earlier picture is shown" } else { "Read back" };
         if ui
             .add(Button::new(text))
-            .on_hover_text("Renders the picture again at full quality and reads the buffer back.")
+            .on_hover_text(
+                "Renders the picture that the window shows at rest again and reads the buffer back.",
+            )
             .clicked()
         {
-            match self.read(choices, *camera, device) {
+            match self.read(choices, &key.0, device) {
                 Ok(raster) => {
                     self.window = RasterWindow { raster: Some(raster), open: true };
                     (self.error, self.read_for) = (None, Some(key));
@@ -101,11 +102,11 @@ impl Buffers {
     }
 
     /// Renders the picture and reads the buffer back.
-    fn read(&self, choices: &Choices<'_>, camera: Camera, device: &Arc<Device>) -> Result<Raster> {
+    fn read(&self, choices: &Choices<'_>, content: &PictureContent, device: &Arc<Device>) -> Result<Raster> {
         let outputs =
             Outputs { normal: self.buffer == Buffer::Normal, depth: self.buffer == Buffer::Depth, id: false };
         let options = RenderOptions {
-            size: choices.size,
+            size: content.size,
             outputs,
             rasterizer: choices.rasterizer,
             split: self.buffer.is_level(),
@@ -114,11 +115,11 @@ impl Buffers {
         let shading = match self.buffer {
             Buffer::Weight => Shading::Weight,
             Buffer::Overlap => Shading::Overlap,
-            _ => choices.settings.shading,
+            _ => content.settings.shading,
         };
-        let settings = Settings { shading, background: None, ..choices.settings.clone() };
+        let settings = Settings { shading, background: None, ..content.settings.clone() };
         let mut renderer = Renderer::new(device, options)?;
-        let (picture, _) = renderer.render_picture(choices.scene, &camera, &settings)?;
+        let (picture, _) = renderer.render_picture(choices.scene, &content.camera, &settings)?;
         let name = self.buffer.name_and_help()[0];
         let pyramids = if self.buffer.is_level() { renderer.read_pyramids()? } else { None };
         if let Some([pulled, pushed]) = pyramids {

@@ -79,7 +79,7 @@ impl Errors {
                         let values = Values::Numbers(found.errors.clone());
                         let name = "largest difference of a channel, linear";
                         self.window.raster =
-                            Some(Raster::new(name, found.size, values).with(ColourMap::Magma, 0.0));
+                            Some(Raster::new(name, found.content.size, values).with(ColourMap::Magma, 0.0));
                         self.found = Some(found);
                     }
                     Err(Error::Cancelled) => {}
@@ -107,9 +107,9 @@ impl Errors {
         if let Some(reason) = unknown {
             ui.label(reason);
         }
-        let Some(Ok(camera)) = &choices.camera else { return };
+        let Some(content) = choices.content() else { return };
         let button = ui.add(Button::new("Compare this picture"));
-        if button.on_hover_text("Renders the picture again at full quality, and the reference or exact picture; takes seconds to minutes.").clicked() {
+        if button.on_hover_text("Renders the picture that the window shows at rest again, and the reference or exact picture; takes seconds to minutes.").clicked() {
             self.error = None;
             let truth = match choices.source.surface() {
                 Ok(surface) if self.against == Against::Surface => Truth::Surface(surface.clone()),
@@ -119,9 +119,7 @@ impl Errors {
                 truth,
                 device: device.clone(),
                 scene: choices.scene.clone(),
-                camera: *camera,
-                settings: choices.settings.clone(),
-                size: choices.size,
+                content,
                 options: RenderOptions { size: choices.size, rasterizer: choices.rasterizer, ..Default::default() },
             };
             self.job = Some(Job::start(move |progress| task.run(progress)));
@@ -130,8 +128,7 @@ impl Errors {
 
     fn show_result(&mut self, ui: &mut Ui, choices: &Choices<'_>) {
         let Some(found) = &self.found else { return };
-        let same = matches!(&choices.camera, Some(Ok(camera)) if *camera == found.camera)
-            && *choices.settings == found.settings;
+        let same = choices.content().is_some_and(|content| content == found.content);
         ui.separator();
         ui.label(format!(
             "Compared with the {}{}",
@@ -175,7 +172,7 @@ impl Errors {
         self.found.as_ref().map(|found| {
             Event::Compared(ComparisonInfo {
                 against: found.against.name_and_help()[0],
-                picture: found.size,
+                picture: found.content.size,
                 rmse: found.rmse,
                 worst: found.worst.0,
                 took_ms: 1e3 * found.took.as_secs_f64(),

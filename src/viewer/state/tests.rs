@@ -36,16 +36,45 @@ pub fn origin(load: u64, preview: bool) -> SceneOrigin {
     SceneOrigin { load, preview, reload: false }
 }
 
+/// A method and a source without a model, for scenes of any.
+pub fn loaded(method: Method) -> (Method, Source) {
+    (method, Source::new(Loaded::new(Surfels::default().into(), method)))
+}
+
+/// A sphere of points.
+pub fn sphere(device: &Arc<Device>, points: u32) -> Arc<Scene> {
+    let sphere = scenes::open(&format!("scene:sphere?points={points}")).unwrap();
+    Arc::new(Scene::upload(device, &sphere).unwrap())
+}
+
+#[test]
+fn equal_pictures_have_equal_content() {
+    let Some(device) = device("equal_pictures_have_equal_content") else { return };
+    let mut state = state();
+    let scenes = [sphere(&device, 10), sphere(&device, 10)];
+    state.set_scene(scenes[0].clone(), loaded(Method::ALL[0]), origin(1, false));
+    let content = |state: &mut ViewState| state.choices().unwrap().content().unwrap();
+    let first = content(&mut state);
+    assert!(first == content(&mut state));
+    assert_eq!(first.settings.lod, 1.0, "that of the window at rest");
+    state.version += 1;
+    assert!(first != content(&mut state), "another appearance");
+    state.version -= 1;
+    state.set_levels(scenes[1].clone());
+    assert!(first != content(&mut state), "another scene");
+    state.set_levels(scenes[0].clone());
+    assert!(first == content(&mut state));
+    state.act(Action::NextShading);
+    assert!(first != content(&mut state), "other settings");
+}
+
 #[test]
 fn a_preview_gives_way_to_the_scene_before_or_to_the_whole_scene() {
     let Some(device) = device("a_preview_gives_way_to_the_scene_before_or_to_the_whole_scene") else {
         return;
     };
-    let scene = |points: u32| {
-        let sphere = scenes::open(&format!("scene:sphere?points={points}")).unwrap();
-        Arc::new(Scene::upload(&device, &sphere).unwrap())
-    };
-    let loaded = || (Method::ALL[0], Source::new(Loaded::new(Surfels::default().into(), Method::ALL[0])));
+    let scene = |points: u32| sphere(&device, points);
+    let loaded = || loaded(Method::ALL[0]);
     let surfels = |state: &ViewState| state.scene_and_settings().map(|(scene, _)| scene.count());
     let mut state = state();
     state.set_scene(scene(10), loaded(), origin(1, true));
