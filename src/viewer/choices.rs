@@ -2,7 +2,7 @@
 
 use super::MethodSettings;
 use super::quality::Quality;
-use super::scene_view::with_picture_of;
+use super::scene_view::{can_render, with_picture_of};
 use super::source::Source;
 use std::sync::{Arc, Weak};
 use surfel::formats::Filter;
@@ -72,6 +72,11 @@ impl Choices<'_> {
     pub fn choose(&mut self, method: Method) {
         *self.settings = self.settings_of(&method);
         *self.method = method;
+    }
+
+    /// Whether the scene can be rendered with these settings.
+    pub fn can_render(&self, settings: &Settings) -> bool {
+        can_render(self.scene, settings)
     }
 
     /// The settings of a method with the present shading, background and α.

@@ -64,11 +64,16 @@ impl SceneView {
         self.given.is_some() || self.orbit != self.framed
     }
 
-    /// Changes to the method that comes `steps` later in the list; shading, background and α stay.
+    /// Changes to the method that comes `steps` later in the list, or to the first after it that can render the scene, in the same steps; shading,
+    /// background and α stay.
     pub fn step_method(&mut self, steps: usize, method_settings: &MethodSettings) {
-        let now = Method::ALL.iter().position(|method| method.name == self.method.name).unwrap_or(0);
-        self.method = Method::ALL[(now + steps) % Method::ALL.len()];
-        self.settings = with_picture_of(method_settings(&self.method), &self.settings);
+        let (all, count) = (Method::ALL, Method::ALL.len());
+        let now = all.iter().position(|method| method.name == self.method.name).unwrap_or(0);
+        let next = (1..count).map(|number| all[(now + number * steps) % count]);
+        let mut next = next.map(|method| (method, with_picture_of(method_settings(&method), &self.settings)));
+        if let Some(next) = next.find(|(_, settings)| can_render(&self.scene, settings)) {
+            (self.method, self.settings) = next;
+        }
     }
 }
 

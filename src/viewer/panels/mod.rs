@@ -45,6 +45,9 @@ const SLIDER: f32 = 150.0;
 /// Shows all panels; returns the width of the panel beside the picture, points.
 pub fn show(ui: &mut Ui, state: &mut ViewState, ui_state: &mut UiState, device: &Arc<Device>) -> f32 {
     let whole = ui.max_rect();
+    if let Some(choices) = state.choices() {
+        ui_state.split.update(&choices);
+    }
     if let Some((stage, part)) = ui_state.loading {
         Panel::bottom("loading").show(ui, |ui| {
             ui.horizontal(|ui| {

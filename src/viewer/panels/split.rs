@@ -40,6 +40,17 @@ impl Split {
         Some((right, self.at))
     }
 
+    /// Chooses another method for the right picture if there is none yet, or if it cannot render the scene.
+    pub fn update(&mut self, choices: &Choices<'_>) {
+        if !self.on || self.settings.as_ref().is_some_and(|settings| choices.can_render(settings)) {
+            return;
+        }
+        let others = Method::ALL.iter().filter(|other| other.name != choices.method.name);
+        let mut others = others.map(|other| (other.name.to_owned(), choices.settings_of(other)));
+        let found = others.find(|(_, settings)| choices.can_render(settings)).unzip();
+        (self.name, self.settings) = (found.0.unwrap_or_default(), found.1);
+    }
+
     /// Shows the choice of the right picture.
     pub fn show(&mut self, ui: &mut Ui, choices: &Choices<'_>) {
         ui.checkbox(&mut self.on, "split view")
@@ -47,10 +58,7 @@ impl Split {
         if !self.on {
             return;
         }
-        if self.settings.is_none() {
-            let method = other_than(choices.method, choices.primitives);
-            (self.name, self.settings) = (method.name.into(), Some(choices.settings_of(&method)));
-        }
+        self.update(choices);
         combo(ui, "on the right", &self.name.clone(), "The method of the right picture.", |ui| {
             if let Some(method) = method::list(ui, &self.name, choices.primitives) {
                 (self.name, self.settings) = (method.name.into(), Some(choices.settings_of(&method)));
@@ -99,12 +107,6 @@ impl Split {
     }
 }
 
-/// The first other method that can render the scene; `primitives` is whether that has lines or triangles.
-fn other_than(method: &Method, primitives: bool) -> Method {
-    let others = Method::ALL.into_iter().filter(|other| other.name != method.name);
-    others.into_iter().find(|other| other.pull_push.is_some() || !primitives).unwrap_or(*method)
-}
-
 /// Name of a picture, with its time if that is known.
 fn title(name: &str, report: Option<&FrameReport>) -> String {
     match report {
@@ -117,6 +119,9 @@ fn title(name: &str, report: Option<&FrameReport>) -> String {
 mod tests {
     use super::*;
     use crate::viewer::scene_view::with_picture_of;
+    use crate::viewer::state::tests::{lines, loaded, origin, sphere, state};
+    use crate::viewer::tests::device;
+    use std::sync::Arc;
     use surfel::settings::Shading;
 
     #[test]
@@ -139,12 +144,26 @@ mod tests {
     }
 
     #[test]
-    fn the_right_picture_has_another_method() {
-        for method in Method::ALL {
-            for primitives in [false, true] {
-                let other = other_than(&method, primitives);
-                assert_ne!(other.name, method.name);
-                assert!(other.pull_push.is_some() || !primitives, "{}", other.name);
+    fn the_right_picture_has_another_method_that_renders_the_scene() {
+        let Some(device) = device("the_right_picture_has_another_method_that_renders_the_scene") else {
+            return;
+        };
+        let mut split = Split { on: true, ..Split::default() };
+        let [sphere, lines] = [sphere(&device, 10), lines(&device)];
+        for (number, method) in Method::ALL.into_iter().enumerate() {
+            for scene in [&sphere, &lines] {
+                let mut state = state();
+                state.set_scene(scene.clone(), loaded(method), origin(number as u64, false));
+                let choices = state.choices().unwrap();
+                // What was chosen for the scene before stays if it can.
+                split.update(&choices);
+                let settings = split.settings.clone().unwrap();
+                assert!(choices.can_render(&settings), "{} beside {}", split.name, method.name);
+                if !Arc::ptr_eq(scene, &sphere) {
+                    split.settings = None;
+                    split.update(&choices);
+                    assert_ne!(split.name, method.name);
+                }
             }
         }
     }

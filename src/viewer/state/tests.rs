@@ -4,9 +4,11 @@ use super::*;
 use crate::viewer::directions::ViewDirection;
 use crate::viewer::tests::device;
 use crate::viewer::{Events, Loaded, SaveFolder};
+use glam::Vec3;
+use std::collections::HashSet;
 use std::time::Instant;
 use surfel::frame::faster::FasterRasterizers;
-use surfel::geometry::Surfels;
+use surfel::geometry::{Model, Primitives, Surfels};
 use surfel::verify::scenes;
 use surfel::vk::DeviceOptions;
 
@@ -45,6 +47,38 @@ pub fn loaded(method: Method) -> (Method, Source) {
 pub fn sphere(device: &Arc<Device>, points: u32) -> Arc<Scene> {
     let sphere = scenes::open(&format!("scene:sphere?points={points}")).unwrap();
     Arc::new(Scene::upload(device, &sphere).unwrap())
+}
+
+/// A line.
+pub fn lines(device: &Arc<Device>) -> Arc<Scene> {
+    let primitives = Primitives {
+        positions: vec![Vec3::ZERO, Vec3::X],
+        directions: vec![Vec3::X; 2],
+        radii: vec![0.1; 2],
+        tubes: vec![[0, 1]],
+        ..Default::default()
+    };
+    let model = Model { surfels: Surfels::default(), primitives };
+    Arc::new(Scene::upload(device, &model).unwrap())
+}
+
+#[test]
+fn methods_that_cannot_render_the_scene_are_skipped() {
+    let Some(device) = device("methods_that_cannot_render_the_scene_are_skipped") else { return };
+    let pull_push = Method::named("pull-push").unwrap();
+    for (scene, reached) in [(lines(&device), 2), (sphere(&device, 10), Method::ALL.len())] {
+        for action in [Action::NextMethod, Action::PreviousMethod] {
+            let mut state = state();
+            state.set_scene(scene.clone(), loaded(pull_push), origin(1, false));
+            let names = (0..Method::ALL.len()).map(|_| {
+                state.act(action);
+                let choices = state.choices().unwrap();
+                assert!(choices.can_render(choices.settings), "{}", choices.method.name);
+                choices.method.name
+            });
+            assert_eq!(names.collect::<HashSet<_>>().len(), reached);
+        }
+    }
 }
 
 #[test]
