@@ -117,15 +117,7 @@ impl WindowRenderer {
     ) -> Result<Option<Instant>> {
         let start = Instant::now();
         self.fly(state, input, start);
-        let content = state.scene_and_settings().map(|(scene, settings)| Content {
-            scene,
-            settings,
-            split_settings: ui_state.split_settings(state),
-        });
-        if self.measured_content != content {
-            self.adaptive.reset();
-            self.measured_content = content;
-        }
+        self.note_content(state, ui_state);
         let workload = state.workload();
         let moving = self.adaptive.is_moving(start);
         let quality =
@@ -134,6 +126,8 @@ impl WindowRenderer {
         ui_state.surfels = workload.as_ref().map_or(0, |workload| workload.surfels(quality) as u64);
         let size = state.viewport.size;
         let lay_out_again = self.hud.lay_out(&self.window, state, ui_state);
+        // The panels may have changed the settings.
+        self.note_content(state, ui_state);
         if let Some(event) = ui_state.take_event() {
             events.emit(&event);
         }
@@ -173,7 +167,7 @@ impl WindowRenderer {
             // A window without an extent sends an event when it has one again.
             return Ok((!window_size.contains(&0)).then(|| Instant::now() + RETRY));
         }
-        if ui_state.times.is_open() && ui_state.times.push(self.split_view.reports(&self.presenter)?) {
+        if ui_state.shows_times(state) && ui_state.times.push(self.split_view.reports(&self.presenter)?) {
             self.window.request_redraw();
         }
         self.pick(state)?;
@@ -187,6 +181,23 @@ impl WindowRenderer {
         }
         let wakes = [self.adaptive.refine_at(now), self.hud.wakes()];
         Ok(wakes.into_iter().flatten().min())
+    }
+
+    /// Notes the scene and the settings of the next frames: times of others are dropped.
+    fn note_content(&mut self, state: &ViewState, ui_state: &mut UiState) {
+        let content = state.scene_and_settings().map(|(scene, settings)| Content {
+            scene,
+            settings,
+            split_settings: ui_state.split_settings(state),
+        });
+        if self.measured_content != content {
+            self.adaptive.reset();
+            self.measured_content = content;
+        }
+        if let Some(Content { scene, settings, split_settings }) = &self.measured_content {
+            let settings = [Some(settings), split_settings.as_ref()];
+            ui_state.times.keep_reports_of(&Arc::downgrade(scene), settings);
+        }
     }
 
     /// Moves the camera by the time since the last frame, if keys of flight are held.

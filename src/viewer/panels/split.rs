@@ -54,7 +54,7 @@ impl Split {
     /// Shows the choice of the right picture.
     pub fn show(&mut self, ui: &mut Ui, choices: &Choices<'_>) {
         ui.checkbox(&mut self.on, "split view")
-            .on_hover_text("Shows the scene by another method to the right of a divider, which can be dragged. Shading and background are those of the left picture.");
+            .on_hover_text("Shows the scene by another method to the right of a divider, which can be dragged. Shading and background are those of the left picture. While it is on, each pass is timed, which makes frames slower.");
         if !self.on {
             return;
         }
@@ -118,11 +118,26 @@ fn title(name: &str, report: Option<&FrameReport>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::viewer::panels::UiState;
+    use crate::viewer::quality::Quality;
     use crate::viewer::scene_view::with_picture_of;
     use crate::viewer::state::tests::{lines, loaded, origin, sphere, state};
     use crate::viewer::tests::device;
     use std::sync::Arc;
     use surfel::settings::Shading;
+
+    #[test]
+    fn frames_of_a_split_view_are_measured() {
+        let Some(device) = device("frames_of_a_split_view_are_measured") else { return };
+        let (mut state, mut ui_state) = (state(), UiState::default());
+        state.set_scene(sphere(&device, 10), loaded(Method::ALL[0]), origin(1, false));
+        let is_measured =
+            |ui_state: &UiState, state: &ViewState| ui_state.frame_options(state, Quality::FULL).profile;
+        assert!(!is_measured(&ui_state, &state));
+        ui_state.split.on = true;
+        ui_state.split.update(&state.choices().unwrap());
+        assert!(is_measured(&ui_state, &state));
+    }
 
     #[test]
     fn methods_change_without_their_shading_and_its_strengths() {

@@ -4,9 +4,10 @@ use crate::viewer::quality::{COARSEST_LOD, MIN_SCALE};
 use crate::viewer::split_view::Reports;
 use egui::{Align2, Color32, FontId, Grid, Pos2, Rect, Sense, Ui, vec2};
 use std::collections::VecDeque;
+use std::sync::Weak;
 use surfel::settings::Choice;
 use surfel::thousands;
-use surfel::{FrameReport, Settings, SplatCounts};
+use surfel::{FrameReport, Scene, Settings, SplatCounts};
 
 /// Number of frames in the plot.
 const FRAMES: usize = 120;
@@ -37,6 +38,8 @@ pub struct Times {
     left: Option<FrameReport>,
     /// Report of its right picture.
     right: Option<FrameReport>,
+    /// Scene and settings of the left and of the right picture.
+    measured: [Option<(Weak<Scene>, Settings)>; 2],
 }
 
 /// Times of a frame.
@@ -73,7 +76,7 @@ pub fn ms(milliseconds: f64) -> String {
 }
 
 impl Times {
-    /// Whether the panel is open, so that frames are profiled.
+    /// Whether the panel is open.
     pub fn is_open(&self) -> bool {
         self.open
     }
@@ -81,6 +84,20 @@ impl Times {
     /// The last reports of the left and of the right picture.
     pub fn last(&self) -> [Option<&FrameReport>; 2] {
         [self.left.as_ref(), self.right.as_ref()]
+    }
+
+    /// Drops the reports of pictures of other scenes or settings than those of the left and of the right picture; `None` for a picture that is
+    /// not visible.
+    pub fn keep_reports_of(&mut self, scene: &Weak<Scene>, settings: [Option<&Settings>; 2]) {
+        let reports = [&mut self.left, &mut self.right];
+        for ((report, measured), settings) in reports.into_iter().zip(&mut self.measured).zip(settings) {
+            let Some(settings) = settings else { continue };
+            let is_same =
+                |(before, own): &(Weak<Scene>, Settings)| Weak::ptr_eq(before, scene) && own == settings;
+            if !measured.as_ref().is_some_and(is_same) {
+                (*report, *measured) = (None, Some((scene.clone(), settings.clone())));
+            }
+        }
     }
 
     /// Takes the reports of a frame; returns whether there were any.
@@ -311,6 +328,29 @@ mod tests {
         assert_eq!((times.frames.len(), &times.passes[..]), (FRAMES, &["a", "b"][..]));
         assert_eq!(times.frames[0].sum(), 21.0);
         assert_ne!(times.colour("a"), times.colour("b"));
+    }
+
+    #[test]
+    fn a_report_is_kept_as_long_as_its_picture_has_the_same_settings() {
+        let (scene, plain) = (Weak::new(), Settings::default());
+        let other = Settings { cutoff: 2.0, ..Settings::default() };
+        let mut times = Times::default();
+        let both = || Reports { right: report(1.0).left, ..report(1.0) };
+        let mut kept = |settings, reports| {
+            times.keep_reports_of(&scene, settings);
+            let kept = times.last().map(|report| report.is_some());
+            times.push(reports);
+            kept
+        };
+        let none = || Reports { left: None, right: None };
+        assert_eq!(kept([Some(&plain), Some(&plain)], both()), [false; 2]);
+        assert_eq!(kept([Some(&plain), Some(&plain)], none()), [true; 2]);
+        // The view is not split for a while.
+        assert_eq!(kept([Some(&plain), None], none()), [true; 2]);
+        assert_eq!(kept([Some(&plain), Some(&plain)], none()), [true; 2]);
+        assert_eq!(kept([Some(&other), Some(&plain)], none()), [false, true]);
+        assert_eq!(kept([Some(&other), Some(&other)], both()), [false; 2]);
+        assert_eq!(kept([Some(&other), Some(&other)], none()), [true; 2]);
     }
 
     #[test]

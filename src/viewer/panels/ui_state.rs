@@ -81,10 +81,15 @@ impl UiState {
         self.split(state).map(|(settings, _)| settings)
     }
 
-    /// Options of the next frame; `coarser` is whether it renders a coarser level of detail.
+    /// Options of a frame of a quality.
     pub fn frame_options(&self, state: &ViewState, quality: Quality) -> FrameOptions {
         let split = self.split(state).map(|(settings, at)| (quality.settings(&settings), at));
-        FrameOptions { profile: self.times.is_open(), version: state.version(), split }
+        FrameOptions { profile: self.shows_times(state), version: state.version(), split }
+    }
+
+    /// Whether times are visible, so that frames are measured.
+    pub fn shows_times(&self, state: &ViewState) -> bool {
+        self.times.is_open() || self.split(state).is_some()
     }
 
     /// Settings of the right picture, and where it begins as part of the width, if the view is split.
