@@ -21,6 +21,8 @@ pub struct Choices<'a> {
     /// Whether a legend tells what the picture's colours mean.
     pub legend: &'a mut bool,
     pub surfels: u64,
+    /// Whether the scene is a preview.
+    pub preview: bool,
     /// Whether the scene has lines or triangles.
     pub primitives: bool,
     /// Whether the surfels have normalization weights.

@@ -276,12 +276,13 @@ impl ViewState {
         Some([method.name, settings.shading.name()])
     }
 
-    /// Title of the window: scene, number of surfels, method and shading.
+    /// Title of the window: scene, whether it is a preview, number of surfels, method and shading.
     pub fn title(&self) -> String {
-        let Some(SceneView { method, settings, scene, source, .. }) = &self.view else {
+        let Some(SceneView { method, settings, scene, source, origin, .. }) = &self.view else {
             return "surfel".into();
         };
         let (title, surfels) = (source.info().title(), thousands(scene.point_count()));
+        let title = if origin.preview { format!("preview of {title}") } else { title };
         format!("{title} · {surfels} surfels · {}, {} · surfel", method.name, settings.shading.name())
     }
 
@@ -301,7 +302,7 @@ impl ViewState {
     pub fn choices(&mut self) -> Option<Choices<'_>> {
         let camera = self.frame(Quality::FULL).map(|frame| frame.map(|(_, camera, _)| camera));
         let Self { view, viewport, method_settings, rasterizer, filter, legend, version, .. } = self;
-        let SceneView { method, settings, scene, source, .. } = view.as_mut()?;
+        let SceneView { method, settings, scene, source, origin, .. } = view.as_mut()?;
         let streams = scene.streams();
         Some(Choices {
             method,
@@ -309,6 +310,7 @@ impl ViewState {
             source,
             filter,
             surfels: scene.point_count(),
+            preview: origin.preview,
             primitives: streams.primitives.any(),
             weighted: streams.weights.is_some(),
             scene,

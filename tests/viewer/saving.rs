@@ -297,3 +297,22 @@ fn the_next_window_starts_with_what_the_user_changed_in_this_one() {
     let saved: Value = serde_json::from_slice(&file).unwrap();
     assert_eq!([&saved["hidden"], &saved["background"]], [&Value::from(false), &Value::Null]);
 }
+
+#[test]
+fn the_picture_of_a_preview_is_not_saved() {
+    let Some((display, program)) = setup("the_picture_of_a_preview_is_not_saved") else { return };
+    // Estimating normals and radii takes seconds.
+    let header = "ply\nformat binary_little_endian 1.0\nelement vertex 200000\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+    let points = (0..200_000u32).flat_map(|i| [i % 450, i / 450, (i % 1000).pow(2) % 7].map(|at| at as f32));
+    let bytes: Vec<u8> = header.bytes().chain(points.flat_map(f32::to_le_bytes)).collect();
+    program.write("a.ply", bytes);
+    let mut view = View::open(&display, &program, "a.ply --size 400x300 -q");
+    view.picture(|event| event["preview"] == true);
+    assert_eq!(display.window("preview of a.ply"), view.window);
+    display.press(&[], key::F12);
+    let event = view.next(&["wrong", "wrote", "ready"], |_| true);
+    assert!(event["error"].as_str().is_some_and(|error| error.contains("preview")), "{event}");
+    display.press(&[key::SHIFT], key::F12);
+    view.wrote();
+    view.close();
+}

@@ -14,7 +14,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use surfel::formats::camera as camera_file;
 use surfel::settings::methods::Method;
-use surfel::{Result, Scene};
+use surfel::{Error, Result, Scene};
+
+/// Why the picture of a preview is not saved.
+const PREVIEW: &str = "the picture is that of a preview: save it when all points are loaded";
 
 impl App {
     /// Shows the scene of a load: from the camera of the options or of a file, or framed. The extent of the whole scene differs from that of its
@@ -113,6 +116,9 @@ impl App {
         };
         let screenshot = match kind {
             ScreenshotKind::Window => renderer.capture(state, ui_state)?,
+            ScreenshotKind::Picture | ScreenshotKind::Values if state.is_preview() => {
+                return Err(Error::Usage(PREVIEW.into()));
+            }
             ScreenshotKind::Picture | ScreenshotKind::Values => {
                 let size = state.viewport.size;
                 let Some(frame) = state.frame(Quality::FULL) else { return Ok(()) };

@@ -156,6 +156,7 @@ fn scene_info(ui: &mut Ui, choices: &Choices<'_>) {
         ui.label(format!("and {} more", others.len())).on_hover_text(others.join("\n"));
     }
     let counted = match (info.points, info.dropped) {
+        _ if choices.preview => format!("preview of {} points", thousands(choices.surfels)),
         (0, _) => format!("{} surfels", thousands(choices.surfels)),
         (points, 0) => format!("{} points", thousands(points)),
         (points, dropped) => format!("{} points, {} left out", thousands(points), thousands(dropped)),

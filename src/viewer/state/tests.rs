@@ -113,6 +113,7 @@ fn a_preview_gives_way_to_the_scene_before_or_to_the_whole_scene() {
     let mut state = state();
     state.set_scene(scene(10), loaded(), origin(1, true));
     assert_eq!((surfels(&state), state.is_preview()), (Some(10), true));
+    assert!(state.title().starts_with("preview of "), "{}", state.title());
     state.leave_preview();
     assert_eq!(surfels(&state), None, "nothing was shown before");
     state.set_scene(scene(10), loaded(), origin(2, true));
@@ -123,6 +124,7 @@ fn a_preview_gives_way_to_the_scene_before_or_to_the_whole_scene() {
     let above = eye(&mut state);
     state.set_scene(scene(100), loaded(), origin(2, false));
     assert_eq!((surfels(&state), state.is_preview(), eye(&mut state)), (Some(100), false, above));
+    assert!(!state.title().contains("preview"), "{}", state.title());
     state.set_scene(scene(10), loaded(), origin(3, true));
     state.set_scene(scene(20), loaded(), origin(4, true));
     assert_ne!(eye(&mut state), above);
