@@ -11,6 +11,9 @@ const DOUBLE: Duration = Duration::from_millis(350);
 /// The greatest distance between them, px.
 const NEAR: f64 = 4.0;
 
+/// Factor of the speed of flight while Shift is held.
+const FAST: f64 = 4.0;
+
 /// A key of flight.
 pub struct Flight {
     /// The physical key.
@@ -82,11 +85,12 @@ impl InputState {
         self.held.clear();
     }
 
-    /// Direction of flight: right, up, ahead, each from −1 to 1; `None` if the camera does not fly.
+    /// Direction of flight: right, up, ahead, each from −1 to 1, and longer with Shift; `None` if the camera does not fly.
     pub fn flight(&self) -> Option<DVec3> {
         let held = FLIGHT.iter().filter(|flight| self.has_no_modifiers() && self.held.contains(&flight.key));
         let direction: DVec3 = held.map(|flight| flight.direction).sum();
-        (direction != DVec3::ZERO).then_some(direction)
+        let speed = if self.modifiers.shift_key() { FAST } else { 1.0 };
+        (direction != DVec3::ZERO).then_some(speed * direction)
     }
 }
 
@@ -118,6 +122,8 @@ mod tests {
         assert_eq!(input.flight(), None);
         input.key(key(KeyCode::KeyA), ElementState::Released);
         assert_eq!(input.flight(), Some(DVec3::X));
+        input.modifiers = ModifiersState::SHIFT;
+        assert_eq!(input.flight(), Some(FAST * DVec3::X));
         input.modifiers = ModifiersState::CONTROL;
         assert_eq!(input.flight(), None);
         input.key(key(KeyCode::KeyS), ElementState::Pressed);

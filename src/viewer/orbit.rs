@@ -17,6 +17,8 @@ const DISTANCES: [f64; 2] = [1e-6, 1e3];
 const SPEED: f64 = 0.75;
 /// The least distance to the pivot that counts for the speed of flight, in radii of the scene: close to a surface, too, flight goes on.
 const FLIGHT_DISTANCE: f64 = 0.02;
+/// The least cosine of the pitch that turning about the eye allows for: near the poles it would turn without end.
+const LEAST_COSINE: f64 = 0.25;
 /// Cosine of the pitch below which the camera looks straight up or down, where the up axis of the world does not determine that of the picture.
 const STRAIGHT: f64 = 1e-6;
 
@@ -121,6 +123,16 @@ impl Orbit {
         self.eye = self.pivot + self.rotation() * (before.transpose() * (self.eye - self.pivot));
     }
 
+    /// Turns about the eye as the cursor moves by `delta`, px: points in the middle of the picture follow the cursor.
+    pub fn turn_about_eye(&mut self, delta: DVec2, viewport: &Viewport) {
+        let before = self.rotation();
+        // In the middle of the picture a pixel is that many radians.
+        let angles = viewport.units_per_px(1.0) * delta;
+        self.yaw += angles.x / self.pitch.cos().max(LEAST_COSINE);
+        self.pitch = (self.pitch - angles.y).clamp(-0.5 * std::f64::consts::PI, 0.5 * std::f64::consts::PI);
+        self.pivot = self.eye + self.rotation() * (before.transpose() * (self.pivot - self.eye));
+    }
+
     /// Pans as the cursor moves by `delta`, px: points at the pivot's distance follow the cursor.
     pub fn pan(&mut self, delta: DVec2, viewport: &Viewport) {
         let [_, right, up] = self.axes();
@@ -169,7 +181,7 @@ impl Orbit {
         }
     }
 
-    /// Flies for some seconds; `direction` is right, up, ahead, each from −1 to 1.
+    /// Flies for some seconds; `direction` is right, up, ahead: 1 is the usual speed.
     pub fn fly(&mut self, direction: DVec3, seconds: f64, viewport: &Viewport, bounds: &Bounds) {
         let [forward, right, up] = self.axes();
         // Under a parallel projection the pivot's distance is the scale of the picture.

@@ -1,8 +1,9 @@
-//! The camera of the window: zooming towards the surface under the cursor.
+//! The camera of the window: zooming towards the surface under the cursor, turning about the eye.
 
+use crate::display::key;
 use crate::program::surfels;
-use crate::setup;
 use crate::view::View;
+use crate::{SPHERE, setup};
 
 /// A wall of discs in the plane z = 0, from −4 to 4.
 fn wall() -> String {
@@ -28,5 +29,25 @@ fn the_wheel_zooms_to_the_surface_under_the_cursor() {
     let after = view.picture(|event| event["moving"] == false);
     // 24 steps, or twice as many where the server reports each twice.
     assert!((1e-3..0.3).contains(&far(&after)), "{after}");
+    view.close();
+}
+
+#[test]
+fn a_drag_with_ctrl_turns_about_the_eye() {
+    let Some((display, program)) = setup("a_drag_with_ctrl_turns_about_the_eye") else { return };
+    let mut view = View::open(&display, &program, &format!("{SPHERE} --size 400x300 --fresh"));
+    let first = view.picture(|_| true)["camera"].clone();
+    display.hold(key::CONTROL, true);
+    display.drag(view.window, 1, &[[100, 150], [120, 160], [140, 150]]);
+    display.hold(key::CONTROL, false);
+    let turned = view.picture(|event| event["moving"] == false && event["camera"] != first)["camera"].clone();
+    let coordinates = |camera: &serde_json::Value, name: &str| -> Vec<f64> {
+        camera[name].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+    };
+    let moved = |name: &str| {
+        let pairs = coordinates(&turned, name).into_iter().zip(coordinates(&first, name));
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    };
+    assert!(moved("eye") < 1e-9 && moved("target") > 0.1, "{turned} {first}");
     view.close();
 }

@@ -77,10 +77,11 @@ impl App {
     pub(super) fn drag(&mut self, to: DVec2) {
         let delta = to - self.input.cursor;
         self.input.cursor = to;
-        let (button, shift) = (self.input.button, self.input.modifiers.shift_key());
+        let (button, modifiers) = (self.input.button, self.input.modifiers);
         let Some((orbit, viewport, _)) = self.state.orbit_mut() else { return };
         match button {
-            Some(MouseButton::Left) if !shift => orbit.turn(delta, viewport),
+            Some(MouseButton::Left) if modifiers.control_key() => orbit.turn_about_eye(delta, viewport),
+            Some(MouseButton::Left) if !modifiers.shift_key() => orbit.turn(delta, viewport),
             Some(MouseButton::Left | MouseButton::Middle) => orbit.pan(delta, viewport),
             Some(MouseButton::Right) => {
                 let centre = viewport.centre();

@@ -170,6 +170,25 @@ fn points_in_front_follow_the_cursor_as_it_turns() {
 }
 
 #[test]
+fn turning_about_the_eye_moves_the_pivot_alone_and_points_follow_the_cursor() {
+    for viewport in viewports() {
+        let mut orbit = Orbit::framing(&(&bounds()).into(), Y_UP, &viewport);
+        orbit.set_pivot(orbit.point(DVec2::new(200.0, 300.0), 0.8 * orbit.distance(), &viewport), &viewport);
+        let (before, ahead) = (orbit, orbit.eye + 1e-3 * orbit.distance() * orbit.axes()[0]);
+        orbit.turn_about_eye(DVec2::new(8.0, 5.0), &viewport);
+        assert!((orbit.eye - before.eye).length() < 1e-12, "{viewport:?}");
+        assert!((orbit.distance() / before.distance() - 1.0).abs() < 1e-9, "the pivot stays ahead");
+        if !viewport.parallel {
+            let clip = orbit.camera(&viewport, &bounds()).unwrap().world_to_clip() * ahead.extend(1.0);
+            let moved = clip.truncate().truncate() / clip.w * DVec2::new(320.0, 240.0);
+            assert!((moved - DVec2::new(8.0, 5.0)).length() < 0.1, "{moved}");
+        }
+        orbit.turn_about_eye(DVec2::new(0.0, 1e5), &viewport);
+        assert!(orbit.camera(&viewport, &bounds()).is_ok(), "straight up");
+    }
+}
+
+#[test]
 fn view_directions_are_right() {
     for (direction, from) in [
         (ViewDirection::Front, DVec3::Z),

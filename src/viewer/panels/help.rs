@@ -5,21 +5,22 @@ use crate::viewer::layout::Layout;
 use egui::{Context, Grid, ScrollArea, Ui, Window};
 
 /// Actions of the mouse.
-const MOUSE: [(&str, &str); 4] = [
+const MOUSE: [(&str, &str); 5] = [
     ("left", "turn"),
     ("double left", "set the pivot to this point"),
+    ("Ctrl+left", "turn about the eye"),
     ("middle, Shift+left", "pan"),
     ("wheel; right", "zoom to the cursor; to the centre"),
 ];
 
 /// The action of the keys of flight.
-const FLIGHT: &str = "fly ahead, left, back, right, up, down";
+const FLIGHT: &str = "fly ahead, left, back, right, up, down; with Shift fast";
 /// Note on keyboard layouts.
 const LAYOUTS: &str = "The keys that fly are those of W A S D, E Q on a US keyboard. Where your keyboard has another letter of this list on \
                        one of them, press it with Alt.";
 
 /// Initial height of the window, points: the whole list fits.
-const HEIGHT: f32 = 730.0;
+const HEIGHT: f32 = 750.0;
 
 /// Shows the list, with the names of keys of this keyboard layout.
 pub fn show(context: &Context, layout: &Layout) {
