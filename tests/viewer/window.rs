@@ -171,3 +171,21 @@ fn margins(view: &View<'_>, columns: usize, fit: impl Fn([usize; 2]) -> bool) {
         fit([first, columns - 1 - last]).then_some(())
     });
 }
+
+#[test]
+fn an_error_is_closed_by_its_button() {
+    let Some((display, program)) = setup("an_error_is_closed_by_its_button") else { return };
+    program.write("broken.ply", "ply\nformat ascii 1.0\nelement vertex 5\n");
+    let broken = program.path("broken.ply").canonicalize().unwrap();
+    let mut view = View::open(&display, &program, &format!("{SPHERE} --size 400x300 --fresh -q"));
+    view.picture(|_| true);
+    // The error is above the picture, where nothing is.
+    let has_error = |pixels: &image::RgbImage| pixels.get_pixel(395, 5).0 != [0; 3];
+    display.pixels_that(view.window, "shows the scene", |pixels| !has_error(pixels));
+    assert!(display.drop_files(view.window, &[&broken]));
+    view.until("wrong", |_| true);
+    display.pixels_that(view.window, "shows the error", has_error);
+    display.click(view.window, [14, 12], 1, 1);
+    display.pixels_that(view.window, "closes the error", |pixels| !has_error(pixels));
+    view.close();
+}

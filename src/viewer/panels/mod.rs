@@ -56,16 +56,11 @@ pub fn show(ui: &mut Ui, state: &mut ViewState, ui_state: &mut UiState, device: 
             })
         });
     }
-    if let Some(message) = &ui_state.message {
-        Panel::bottom("message").show(ui, |ui| ui.label(message));
-    }
-    if let Some(error) = ui_state.error.as_ref().or(ui_state.render_error.as_ref()) {
-        Panel::top("error").show(ui, |ui| ui.colored_label(ui.visuals().error_fg_color, error));
-    }
+    messages(ui, ui_state);
     let covered = side_panel(ui, state, ui_state, device);
     let picture = Rect { max: pos2(whole.right() - covered, whole.bottom()), ..whole };
-    ui_state.split.divider(ui, picture, state, &ui_state.times);
     let free = ui.available_rect_before_wrap();
+    ui_state.split.divider(ui, [picture, free], state, &ui_state.times);
     match state.names() {
         Some(_) => legend::show(ui, free, picture, state, ui_state),
         None if ui_state.loading.is_none() => start::show(ui, free, state, &ui_state.layout),
@@ -89,6 +84,35 @@ pub fn show(ui: &mut Ui, state: &mut ViewState, ui_state: &mut UiState, device: 
         ui.ctx().request_repaint_after(POLL_PERIOD);
     }
     covered
+}
+
+/// Shows the last message below and the last error above the picture, each with a button that closes it; an error of rendering stays while it
+/// persists.
+fn messages(ui: &mut Ui, ui_state: &mut UiState) {
+    if let Some(message) = &ui_state.message {
+        let panel = Panel::bottom("message").show(ui, |ui| closable(ui, message.into()));
+        if panel.inner {
+            ui_state.message = None;
+        }
+    }
+    let error = |ui: &Ui, text: &str| RichText::new(text).color(ui.visuals().error_fg_color);
+    if let Some(text) = &ui_state.error {
+        if Panel::top("error").show(ui, |ui| closable(ui, error(ui, text))).inner {
+            ui_state.error = None;
+        }
+    } else if let Some(text) = &ui_state.render_error {
+        Panel::top("error").show(ui, |ui| ui.label(error(ui, text)));
+    }
+}
+
+/// Shows a text after a button; returns whether the button was clicked.
+fn closable(ui: &mut Ui, text: RichText) -> bool {
+    let row = ui.horizontal_top(|ui| {
+        let button = ui.small_button("×").on_hover_text("Closes this message.");
+        ui.add(Label::new(text).wrap());
+        button.clicked()
+    });
+    row.inner
 }
 
 /// Shows the panel on the right unless it is hidden or the window is too narrow; returns its width, points.

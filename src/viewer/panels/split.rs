@@ -73,8 +73,8 @@ impl Split {
         }
     }
 
-    /// Shows the divider of the picture in `whole`, and the names of both pictures above it.
-    pub fn divider(&mut self, ui: &mut Ui, whole: Rect, state: &ViewState, times: &Times) {
+    /// Shows the divider of the picture in `whole`, and the names of both pictures at the top of what other panels leave of it, `free`.
+    pub fn divider(&mut self, ui: &mut Ui, [whole, free]: [Rect; 2], state: &ViewState, times: &Times) {
         let Some([left, _]) = state.names().filter(|_| self.on && self.settings.is_some()) else { return };
         let x = whole.left() + self.at as f32 * whole.width();
         let corner = pos2(x - 0.5 * WIDTH, whole.top());
@@ -92,7 +92,7 @@ impl Split {
             // The names lie beyond the divider, but beneath the panels.
             let painter = ui.painter().with_clip_rect(whole);
             let reports = times.last();
-            let y = whole.top() + 6.0;
+            let y = free.top() + 6.0;
             for (at, align, name, report) in [
                 (pos2(x - WIDTH, y), Align2::RIGHT_TOP, left, reports[0]),
                 (pos2(x + WIDTH, y), Align2::LEFT_TOP, self.name.as_str(), reports[1]),
