@@ -13,6 +13,7 @@ use crate::viewer::source::Source;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use surfel::formats::camera as camera_file;
+use surfel::load::scene;
 use surfel::settings::methods::Method;
 use surfel::{Error, Result, Scene};
 
@@ -69,6 +70,14 @@ impl App {
         }
     }
 
+    /// The folder of the last file of the scene; the current folder without one.
+    fn folder(&self) -> PathBuf {
+        let inputs = &self.loading.as_ref().unwrap_or(&self.shown).inputs;
+        let file = inputs.iter().rfind(|input| scene(input).is_none());
+        let folder = file.and_then(|file| Path::new(file).parent()).filter(|folder| *folder != Path::new(""));
+        folder.unwrap_or(Path::new(".")).into()
+    }
+
     /// Closes the dialog and opens the chosen file, if there is a result.
     pub(super) fn take_dialog_result(&mut self) {
         let Some(result) = self.state.dialog_result.take() else { return };
@@ -83,7 +92,7 @@ impl App {
     pub(super) fn run_file_action(&mut self, action: Action) -> Result<()> {
         if action == Action::Open {
             self.input.release_all();
-            self.state.dialog = Some(OpenDialog::in_folder(&self.options.save_folder.path));
+            self.state.dialog = Some(OpenDialog::in_folder(&self.folder()));
             self.changed();
             return Ok(());
         }
