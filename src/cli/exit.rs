@@ -109,7 +109,7 @@ fn code(error: &Error) -> u8 {
 }
 
 /// What to do about an error: the option or command that remedies it.
-fn remedy(error: &Error) -> &'static str {
+pub(super) fn remedy(error: &Error) -> &'static str {
     match error {
         Error::Usage(text) if text.contains("normalization weights: capture") => {
             " (`surfel convert --weights` captures them)"

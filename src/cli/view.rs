@@ -5,7 +5,7 @@ mod surface;
 use super::args::{self, View};
 use super::files::config_folder;
 use super::progress::{self, Silent};
-use super::{camera, rasterizers, render, vulkan};
+use super::{camera, exit, rasterizers, render, vulkan};
 use crate::viewer::{self, LoadRequest, Loaded, SceneInfo};
 use glam::DVec3;
 use std::ffi::OsString;
@@ -36,6 +36,12 @@ pub fn run(args: View) -> Result<()> {
             args.frame_budget
         )));
     }
+    if !args.screenshots.is_dir() {
+        return Err(Error::Usage(format!(
+            "--screenshots {}: there is no such folder; create it, or give another",
+            args.screenshots.display()
+        )));
+    }
     let file = camera::read(&args.camera)?;
     let given = {
         let args::Camera { eye, target, fov, parallel, file, .. } = &args.camera;
@@ -61,6 +67,7 @@ pub fn run(args: View) -> Result<()> {
             path: args.screenshots.clone(),
             print_names: !(args.quiet || args.json),
         },
+        remedy: exit::remedy,
         settings_file: config_folder().filter(|_| !args.fresh).map(|folder| folder.join("viewer.json")),
         method_chosen: method.is_some()
             || Method::CHOICES.iter().any(|method| args.settings(method) != method.settings()),

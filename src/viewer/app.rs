@@ -332,7 +332,7 @@ impl App {
 
     /// Shows an error as a message; the scene stays.
     fn show_error(&mut self, error: &Error) {
-        let text = error.to_string();
+        let text = format!("{error}{}", (self.options.remedy)(error));
         self.options.events.emit(&Event::Error { error: &text });
         self.ui_state.error = Some(text);
         self.changed();

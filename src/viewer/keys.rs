@@ -67,7 +67,12 @@ pub static BINDINGS: [Binding; 25] = {
     [
         letter("m", "M", "next method", Action::NextMethod),
         shift("m", "Shift+M", "previous method", Action::PreviousMethod),
-        letter("l", "L", "next shading: light, colour, normal, depth, overlap, weight", Action::NextShading),
+        letter(
+            "l",
+            "L",
+            "next shading: light, colour, normal, depth, overlap, weight, edl",
+            Action::NextShading,
+        ),
         letter("p", "P", "perspective or parallel projection", Action::Parallel),
         letter("f", "F", "frame the scene", Action::Frame),
         letter("1", "1", "view from the front", Action::ViewFrom(ViewDirection::Front)),
@@ -76,9 +81,9 @@ pub static BINDINGS: [Binding; 25] = {
         letter("4", "4", "view from the right", Action::ViewFrom(ViewDirection::Right)),
         letter("5", "5", "view from above", Action::ViewFrom(ViewDirection::Top)),
         letter("6", "6", "view from below", Action::ViewFrom(ViewDirection::Bottom)),
-        letter("x", "X", "x is up, then −x", Action::Up(Up { axis: 0, down: false })),
-        letter("y", "Y", "y is up, then −y", Action::Up(Up { axis: 1, down: false })),
-        letter("z", "Z", "z is up, then −z", Action::Up(Up { axis: 2, down: false })),
+        letter("x", "X", "x is up; if it is up: −x", Action::Up(Up { axis: 0, down: false })),
+        letter("y", "Y", "y is up; if it is up: −y", Action::Up(Up { axis: 1, down: false })),
+        letter("z", "Z", "z is up; if it is up: −z", Action::Up(Up { axis: 2, down: false })),
         control("o", "Ctrl+O", "open a scene or a camera (or drop files here)", Action::Open),
         named(
             NamedKey::F12,
@@ -132,6 +137,7 @@ fn is_same(one: &Key<&str>, other: &Key) -> bool {
 mod tests {
     use super::*;
     use std::collections::HashSet;
+    use surfel::settings::{Choice, Shading};
     use winit::keyboard::{KeyCode, PhysicalKey};
 
     #[test]
@@ -156,6 +162,8 @@ mod tests {
             let press = Press { physical, bare: key.clone(), key };
             assert_eq!(action(&press, held), expected, "{press:?} {held:?}");
         }
+        let shadings = BINDINGS.iter().find(|binding| binding.action == Action::NextShading).unwrap();
+        assert_eq!(shadings.does.split(',').count(), Shading::ALL.len(), "{}", shadings.does);
         let names: HashSet<_> = BINDINGS.iter().map(|binding| binding.name).collect();
         assert_eq!(names.len(), BINDINGS.len(), "two bindings have one name");
     }

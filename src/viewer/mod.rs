@@ -56,7 +56,7 @@ use surfel::geometry::{ColourMap, Extent, Model, Pose, SurfelFormat, ValueRange}
 use surfel::settings::Shading;
 use surfel::settings::methods::Method;
 use surfel::vk::{Device, DeviceOptions};
-use surfel::{Progress, Rasterizer, RasterizerChoice, Result, Settings};
+use surfel::{Error, Progress, Rasterizer, RasterizerChoice, Result, Settings};
 
 /// Options of the window.
 pub struct Options {
@@ -84,6 +84,8 @@ pub struct Options {
     pub events: Events,
     /// Where screenshots and cameras are saved.
     pub save_folder: SaveFolder,
+    /// What to do about an error, for the end of its message; may be empty.
+    pub remedy: fn(&Error) -> &'static str,
     /// The file of saved settings, if there is one.
     pub settings_file: Option<PathBuf>,
     /// Whether the user chose a method or changed its settings: saved settings do not apply then.

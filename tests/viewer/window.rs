@@ -175,17 +175,27 @@ fn margins(view: &View<'_>, columns: usize, fit: impl Fn([usize; 2]) -> bool) {
 #[test]
 fn an_error_is_closed_by_its_button() {
     let Some((display, program)) = setup("an_error_is_closed_by_its_button") else { return };
-    program.write("broken.ply", "ply\nformat ascii 1.0\nelement vertex 5\n");
-    let broken = program.path("broken.ply").canonicalize().unwrap();
+    // Points without a spacing.
+    program.write("heap.xyz", "1 2 3\n".repeat(4));
+    let heap = program.path("heap.xyz").canonicalize().unwrap();
     let mut view = View::open(&display, &program, &format!("{SPHERE} --size 400x300 --fresh -q"));
     view.picture(|_| true);
     // The error is above the picture, where nothing is.
     let has_error = |pixels: &image::RgbImage| pixels.get_pixel(395, 5).0 != [0; 3];
     display.pixels_that(view.window, "shows the scene", |pixels| !has_error(pixels));
-    assert!(display.drop_files(view.window, &[&broken]));
-    view.until("wrong", |_| true);
+    assert!(display.drop_files(view.window, &[&heap]));
+    let error = view.until("wrong", |_| true);
+    assert!(error["error"].as_str().unwrap().ends_with("give a radius with --radius"), "{error}");
     display.pixels_that(view.window, "shows the error", has_error);
     display.click(view.window, [14, 12], 1, 1);
     display.pixels_that(view.window, "closes the error", |pixels| !has_error(pixels));
     view.close();
+}
+
+#[test]
+fn a_missing_folder_for_screenshots_is_an_error_before_the_window_opens() {
+    let run = Program::new().run("view --screenshots none");
+    assert!(
+        run.error(2).ends_with("--screenshots none: there is no such folder; create it, or give another")
+    );
 }

@@ -59,7 +59,7 @@ pub struct View {
     /// The Vulkan device
     #[command(flatten)]
     pub device: DeviceArgs,
-    /// Folder for screenshots and saved cameras
+    /// Folder for screenshots and saved cameras; it has to exist
     #[arg(long, alias = "shots", value_name = "FOLDER", default_value = ".")]
     pub screenshots: PathBuf,
     /// Prints nothing but warnings and errors

@@ -22,9 +22,9 @@ const LAYOUTS: &str = "The keys that fly are those of W A S D, E Q on a US keybo
 /// Initial height of the window, points: the whole list fits.
 const HEIGHT: f32 = 750.0;
 
-/// Shows the list, with the names of keys of this keyboard layout.
-pub fn show(context: &Context, layout: &Layout) {
-    Window::new("Keys and mouse").default_height(HEIGHT).show(context, |ui| {
+/// Shows the list, with the names of keys of this keyboard layout; `open` becomes false when it is closed.
+pub fn show(context: &Context, layout: &Layout, open: &mut bool) {
+    Window::new("Keys and mouse").open(open).default_height(HEIGHT).show(context, |ui| {
         ScrollArea::vertical().show(ui, |ui| list(ui, layout));
     });
 }

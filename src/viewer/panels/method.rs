@@ -17,7 +17,9 @@ pub fn show(ui: &mut Ui, choices: &mut Choices<'_>) {
     let settings = &mut *choices.settings;
     let Some(pull_push) = settings.pull_push else {
         axes::show(ui, &mut settings.splatting, choices.weighted);
-        kernel::show(ui, &mut settings.splatting, settings.cutoff);
+        if !settings.draws_points() {
+            kernel::show(ui, &mut settings.splatting, settings.cutoff);
+        }
         parameters(ui, settings);
         return;
     };

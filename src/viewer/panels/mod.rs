@@ -71,9 +71,7 @@ pub fn show(ui: &mut Ui, state: &mut ViewState, ui_state: &mut UiState, device: 
     }
     ui_state.errors.window.show(ui.ctx(), "error");
     ui_state.buffers.window.show(ui.ctx(), "buffer");
-    if ui_state.show_help {
-        help::show(ui.ctx(), &ui_state.layout);
-    }
+    help::show(ui.ctx(), &ui_state.layout, &mut ui_state.show_help);
     if let Some(dialog) = &mut state.dialog {
         state.dialog_result = dialog.show(ui).or(state.dialog_result.take());
     }

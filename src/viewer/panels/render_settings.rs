@@ -11,6 +11,9 @@ use surfel::Settings;
 use surfel::geometry::{ColourMap, ValueRange};
 use surfel::settings::{Alpha, Choice, Cull, Shading};
 
+/// The first background, linear: white.
+const BACKGROUND: [f32; 3] = [1.0; 3];
+
 /// Shows the panel.
 pub fn show(ui: &mut Ui, choices: &mut Choices<'_>) {
     let settings = &mut *choices.settings;
@@ -125,12 +128,18 @@ pub fn range(ui: &mut Ui, range: &mut ValueRange, map: ColourMap, distribution: 
 
 fn background(ui: &mut Ui, choices: &mut Choices<'_>) {
     ui.horizontal(|ui| {
-        let mut colour = choices.settings.background.unwrap_or_default();
-        if ui.color_edit_button_rgb(&mut colour).changed() {
-            choices.settings.background = Some(colour);
+        let background = &mut choices.settings.background;
+        let mut on = background.is_some();
+        let checkbox = ui.checkbox(&mut on, "background").on_hover_text(
+            "Colour of pixels without a surface; partly covered pixels are blended with it. Without a background they are transparent in files, and \
+             black in the window.",
+        );
+        if checkbox.changed() {
+            *background = on.then_some(BACKGROUND);
         }
-        ui.label("background")
-            .on_hover_text("Colour of pixels without a surface; partly covered pixels are blended with it.");
+        if let Some(colour) = background {
+            ui.color_edit_button_rgb(colour);
+        }
     });
 }
 

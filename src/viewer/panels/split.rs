@@ -54,7 +54,7 @@ impl Split {
     /// Shows the choice of the right picture.
     pub fn show(&mut self, ui: &mut Ui, choices: &Choices<'_>) {
         ui.checkbox(&mut self.on, "split view")
-            .on_hover_text("Shows the scene by another method to the right of a divider, which can be dragged. Shading and background are those of the left picture. While it is on, each pass is timed, which makes frames slower.");
+            .on_hover_text("Shows the scene by another method to the right of a divider, which can be dragged. Shading and background are those of the left picture. While it is on, each pass is timed, which makes frames slower. F12 saves the left picture; Shift+F12 saves both.");
         if !self.on {
             return;
         }

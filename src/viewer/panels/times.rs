@@ -14,7 +14,7 @@ const FRAMES: usize = 120;
 /// Height of the plot, points.
 const HEIGHT: f32 = 96.0;
 /// Colours of passes, in the order in which these first occur. The first seven are the palette of Okabe and Ito for colour-blind readers.
-const COLOURS: [Color32; 10] = [
+const COLOURS: [Color32; 26] = [
     Color32::from_rgb(86, 180, 233),
     Color32::from_rgb(230, 159, 0),
     Color32::from_rgb(0, 158, 115),
@@ -25,6 +25,22 @@ const COLOURS: [Color32; 10] = [
     Color32::from_rgb(160, 160, 160),
     Color32::from_rgb(120, 94, 240),
     Color32::from_rgb(150, 100, 60),
+    Color32::from_rgb(255, 255, 255),
+    Color32::from_rgb(75, 255, 30),
+    Color32::from_rgb(255, 30, 255),
+    Color32::from_rgb(255, 30, 105),
+    Color32::from_rgb(30, 255, 150),
+    Color32::from_rgb(135, 30, 150),
+    Color32::from_rgb(150, 255, 180),
+    Color32::from_rgb(30, 105, 30),
+    Color32::from_rgb(255, 165, 255),
+    Color32::from_rgb(30, 255, 255),
+    Color32::from_rgb(135, 180, 30),
+    Color32::from_rgb(30, 60, 255),
+    Color32::from_rgb(180, 210, 255),
+    Color32::from_rgb(60, 75, 120),
+    Color32::from_rgb(180, 30, 45),
+    Color32::from_rgb(30, 180, 30),
 ];
 
 /// Times of the last frames.
@@ -351,6 +367,22 @@ mod tests {
         assert_eq!(kept([Some(&other), Some(&plain)], none()), [false, true]);
         assert_eq!(kept([Some(&other), Some(&other)], both()), [false; 2]);
         assert_eq!(kept([Some(&other), Some(&other)], none()), [true; 2]);
+    }
+
+    #[test]
+    fn all_passes_of_a_frame_have_different_colours() {
+        let mut times = Times::default();
+        let mut left = FrameReport::default();
+        let labels: Vec<_> = (0..25).map(|number| &*format!("pass {number}").leak()).collect();
+        left.pass_times.extend(labels.iter().map(|&label| PassTime { label, milliseconds: 1.0 }));
+        times.push(Reports { left: Some(left), right: None });
+        for (i, a) in labels.iter().enumerate() {
+            for b in &labels[..i] {
+                let [a, b] = [a, b].map(|label| times.colour(label));
+                let apart = (0..3).map(|channel| a[channel].abs_diff(b[channel])).max().unwrap();
+                assert!(apart >= 32, "{a:?} {b:?}");
+            }
+        }
     }
 
     #[test]

@@ -27,6 +27,7 @@ pub fn state() -> ViewState {
         watch: false,
         events: Events::new(Instant::now(), false),
         save_folder: SaveFolder { path: ".".into(), print_names: false },
+        remedy: |_| "",
         settings_file: None,
         method_chosen: false,
     };
