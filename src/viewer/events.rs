@@ -25,6 +25,8 @@ pub enum Event<'a> {
     Picture(PictureInfo<'a>),
     /// The error panel has compared a picture.
     Compared(ComparisonInfo<'a>),
+    /// A surface point was picked, world space; `distance` is that from the one before, if there is one.
+    Picked { point: [f64; 3], distance: Option<f64> },
     /// A screenshot or a camera was saved.
     Wrote { file: &'a Path },
     /// A camera was read from a file.

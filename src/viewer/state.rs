@@ -40,6 +40,8 @@ pub struct ViewState {
     lost: Option<(Method, Settings, SavedAppearance)>,
     /// Position of a double click, px, whose surface becomes the pivot.
     pub pick: Option<DVec2>,
+    /// The surface point that was picked last, world space.
+    picked: Option<DVec3>,
     /// The dialog to open a file, while it is open, and its result.
     pub dialog: Option<OpenDialog>,
     pub dialog_result: Option<DialogResult>,
@@ -70,6 +72,7 @@ impl ViewState {
             view: None,
             lost: None,
             pick: None,
+            picked: None,
             dialog: None,
             dialog_result: None,
             cancel: false,
@@ -89,7 +92,7 @@ impl ViewState {
         let is_new =
             !origin.reload && self.view.as_ref().is_none_or(|view| view.origin != origin.of_preview());
         if is_new {
-            self.up = nearest_axis(source.up());
+            (self.up, self.picked) = (nearest_axis(source.up()), None);
         }
         let framed = Orbit::framing(source.extent(), self.up, &self.viewport);
         let given = None;
@@ -263,11 +266,18 @@ impl ViewState {
         }
     }
 
-    /// Makes a point the pivot. The picture stays.
-    pub fn set_pivot(&mut self, point: DVec3) {
+    /// Makes a point the pivot; the picture stays. Returns the distance of the point that was picked before, if there is one in this scene.
+    pub fn pick_point(&mut self, point: DVec3) -> Option<f64> {
         if let Some((orbit, viewport, _)) = self.orbit_mut() {
             orbit.set_pivot(point, viewport);
         }
+        self.picked.replace(point).map(|before| before.distance(point))
+    }
+
+    /// A number of decimals that tells parts of the scene's radius of 10⁻⁵ apart.
+    pub fn decimals(&self) -> usize {
+        let radius = self.view.as_ref().map_or(1.0, |view| view.source.extent().bounds().radius);
+        (5.0 - radius.log10().floor()).clamp(0.0, 9.0) as usize
     }
 
     /// Names of the method and of the shading.

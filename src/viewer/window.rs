@@ -170,7 +170,7 @@ impl WindowRenderer {
         if ui_state.shows_times(state) && ui_state.times.push(self.split_view.reports(&self.presenter)?) {
             self.window.request_redraw();
         }
-        self.pick(state)?;
+        self.pick(state, ui_state, events)?;
         if lay_out_again || flies {
             self.window.request_redraw();
         }
@@ -242,11 +242,13 @@ impl WindowRenderer {
         Ok(presented.unwrap_or_default())
     }
 
-    /// Makes the surface at the picked position the pivot, if there is one.
-    fn pick(&mut self, state: &mut ViewState) -> Result<()> {
+    /// Makes the surface at the picked position the pivot, if there is one, and reports its coordinates.
+    fn pick(&mut self, state: &mut ViewState, ui_state: &mut UiState, events: &Events) -> Result<()> {
         let Some(at) = state.pick.take() else { return Ok(()) };
         if let Some(point) = self.surface_at(at, state.viewport.size)? {
-            state.set_pivot(point);
+            let distance = state.pick_point(point);
+            ui_state.message = Some(picked_text(point, distance, state.decimals()));
+            events.emit(&Event::Picked { point: point.to_array(), distance });
             self.window.request_redraw();
         }
         Ok(())
@@ -255,6 +257,16 @@ impl WindowRenderer {
     /// The surface point of the last frame at `at`, px in a picture of `size` px, in world space; `None` if there is none near it.
     pub fn surface_at(&self, at: DVec2, size: [u32; 2]) -> Result<Option<DVec3>> {
         self.split_view.surface_at(at, size, &self.presenter)
+    }
+}
+
+/// The message about a picked point, and its distance from the one before.
+fn picked_text(point: DVec3, distance: Option<f64>, decimals: usize) -> String {
+    let [x, y, z] = point.to_array().map(|coordinate| format!("{coordinate:.decimals$}"));
+    let text = format!("Point at x {x}, y {y}, z {z}");
+    match distance {
+        Some(distance) => format!("{text}; distance from the point before: {distance:.decimals$}"),
+        None => text,
     }
 }
 
@@ -290,4 +302,17 @@ fn picture_info<'a>(
 /// A side of the picture at a resolution scale, px. A scaled side is odd, and so no power of two: see [`Presenter::rehearse`].
 fn scaled_side(side: u32, scale: f64) -> u32 {
     if scale < 1.0 { ((f64::from(side) * scale).round() as u32 | 1).min(side) } else { side }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn picked_points_have_coordinates_and_a_distance() {
+        let point = DVec3::new(630_000.25, -1.0, 0.126);
+        assert_eq!(picked_text(point, None, 2), "Point at x 630000.25, y -1.00, z 0.13");
+        let text = picked_text(point, Some(2.0), 1);
+        assert_eq!(text, "Point at x 630000.2, y -1.0, z 0.1; distance from the point before: 2.0");
+    }
 }

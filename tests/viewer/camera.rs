@@ -51,3 +51,26 @@ fn a_drag_with_ctrl_turns_about_the_eye() {
     assert!(moved("eye") < 1e-9 && moved("target") > 0.1, "{turned} {first}");
     view.close();
 }
+
+#[test]
+fn a_double_click_picks_a_point_and_measures_its_distance() {
+    let Some((display, program)) = setup("a_double_click_picks_a_point_and_measures_its_distance") else {
+        return;
+    };
+    program.write("wall.ply", wall());
+    let mut view =
+        View::open(&display, &program, "wall.ply --size 400x300 --fresh --eye 0,0,8 --target 0,0,0 --fov 45");
+    view.picture(|event| event["preview"] == false);
+    let scale = 2.0 * 8.0 * (22.5f64).to_radians().tan() / 300.0;
+    display.click(view.window, [200, 150], 1, 2);
+    let first = view.until("picked", |_| true);
+    assert_eq!(first["distance"], serde_json::Value::Null);
+    display.click(view.window, [230, 110], 1, 2);
+    let second = view.until("picked", |_| true);
+    let point: Vec<f64> = second["point"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
+    let apart = [point[0] - 30.0 * scale, point[1] - 40.0 * scale, point[2]];
+    assert!(apart.iter().all(|apart| apart.abs() < 1e-4), "{second} {scale}");
+    let distance = second["distance"].as_f64().unwrap();
+    assert!((distance - 50.0 * scale).abs() < 1e-4, "{second} {scale}");
+    view.close();
+}

@@ -7,7 +7,7 @@ use egui::{Context, Grid, ScrollArea, Ui, Window};
 /// Actions of the mouse.
 const MOUSE: [(&str, &str); 5] = [
     ("left", "turn"),
-    ("double left", "set the pivot to this point"),
+    ("double left", "pick a point: pivot, coordinates, distance"),
     ("Ctrl+left", "turn about the eye"),
     ("middle, Shift+left", "pan"),
     ("wheel; right", "zoom to the cursor; to the centre"),
