@@ -2,15 +2,17 @@
 //! [metrics](crate::verify::metrics) define them.
 
 mod ceilings;
+mod error;
 mod experiment;
 mod run;
 mod schema;
 
 pub use ceilings::{Ceilings, PassWork, Rate, Shares};
+pub use error::{Against, Error, Float64Error, Terms};
 pub use experiment::Experiment;
 pub use run::{
-    Against, Axes, BOX_FILTER, Blended, Clock, Error, Float64Error, Implementation, Memory, Octree, PIXELS,
-    Pass, Run, RunSettings, SPLATS, TRACED, Terms, Time, View, Viewpoint,
+    Axes, BOX_FILTER, Blended, Clock, Implementation, Memory, Octree, PIXELS, Pass, Run, RunSettings, SPLATS,
+    TRACED, Time, View, Viewpoint,
 };
 pub use schema::schema;
 
