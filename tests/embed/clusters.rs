@@ -99,13 +99,15 @@ fn render<'a>(
     renderer.render_picture(scenes, camera, settings).unwrap()
 }
 
-fn renderer(device: &Arc<Device>) -> Renderer {
-    let rasterizer = Some(Rasterizer::Compute);
-    Renderer::new(
-        device,
-        RenderOptions { size: SIZE, rasterizer: rasterizer.into(), count: true, ..Default::default() },
-    )
-    .unwrap()
+fn renderer(device: &Arc<Device>, size: [u32; 2]) -> Renderer {
+    let rasterizer = Some(Rasterizer::Compute).into();
+    Renderer::new(device, RenderOptions { size, rasterizer, count: true, ..Default::default() }).unwrap()
+}
+
+/// Largest difference of a channel of two pictures.
+fn difference(a: &Picture, b: &Picture) -> f32 {
+    let channels = |picture: &Picture| picture.colour.clone().into_iter().flatten();
+    channels(a).zip(channels(b)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
 }
 
 /// The scene with bounds that were set: parallel rays then resolve depths between the camera's planes, and narrow views relative to the eye, as of
@@ -154,7 +156,7 @@ fn culled_clusters_do_not_change_the_picture() {
         let own = with_planes_of_cameras(Scene::upload(&device, &surfels).unwrap());
         assert!(own.streams().clusters);
         let (other, buffer) = unbounded(&device, &surfels);
-        let mut renderers = [renderer(&device), renderer(&device)];
+        let mut renderers = [renderer(&device, SIZE), renderer(&device, SIZE)];
         let (mut culled, mut covered, mut count) = (0, 0, 0);
         for (frame, settings) in frames().into_iter().enumerate().step_by(some) {
             for (index, camera) in cameras().iter().enumerate() {
@@ -204,17 +206,24 @@ fn clusters_of_instances_are_culled_one_by_one() {
         let scenes = [a, b, a, a, b];
         scenes.iter().enumerate().map(|(i, scene)| Instance::new(scene, place(i))).collect()
     };
-    let mut renderer = renderer(&device);
+    // Where surfels are more than pixels, clusters that others hide are culled. Tiles then visit clusters by their bounds, and the sums of
+    // splats, whose order is another one, round otherwise.
+    let large = [240, 160];
+    let [mut renderer, mut renderer_of_large] = [SIZE, large].map(|size| renderer(&device, size));
     for name in &["perspective-ewa", "sprites-unfiltered", "confetti"][..if_whole(3, 2)] {
         let settings = Method::named(name).unwrap().settings();
-        for camera in cameras() {
-            let (expected, _) = render(&mut renderer, &placed(&other, &other_few)[..], &camera, &settings);
+        for (camera, is_large) in cameras().iter().flat_map(|camera| [(camera, false), (camera, true)]) {
+            let (renderer, rounding) =
+                if is_large { (&mut renderer_of_large, 0.0) } else { (&mut renderer, 1e-6) };
+            let (expected, _) = render(renderer, &placed(&other, &other_few)[..], camera, &settings);
             for scenes in [placed(&own, &own_few), placed(&own, &other_few), placed(&other, &own_few)] {
-                let (found, _) = render(&mut renderer, &scenes[..], &camera, &settings);
-                assert!(found == expected, "{name}");
+                let (found, _) = render(renderer, &scenes[..], camera, &settings);
+                assert!(difference(&found, &expected) <= rounding, "{name}");
+                assert!(found == expected || rounding > 0.0, "{name}");
             }
         }
     }
+    drop(renderer_of_large);
     // The raster path of pull-push, which culls no clusters, gives the same picture.
     let settings = Method::named("pull-push").unwrap().settings();
     let options = RenderOptions { size: SIZE, rasterizer: Rasterizer::Draw.into(), ..Default::default() };
@@ -236,7 +245,7 @@ fn updates_move_the_bounds_of_clusters() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let mut surfels = surfels();
     let own = with_planes_of_cameras(Scene::upload(&device, &surfels).unwrap());
-    let mut renderer = renderer(&device);
+    let mut renderer = renderer(&device, SIZE);
     let settings = Settings { cull: Cull::Back, ..splats_alone() };
     let all: Vec<_> = cameras();
     // Parts of clusters, and whole ones; the last update turns all of the surfels.
