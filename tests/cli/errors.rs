@@ -87,6 +87,16 @@ fn wrong_arguments_exit_with_2_before_anything_is_read() {
         ("--cutoff 0", "cut-off is 0"),
         ("--cutoff 12", "from 0.1 to 8"),
         ("--lowpass 1e6", "from 0 to 100"),
+        (
+            "--method confetti --lowpass 2",
+            "--lowpass is of the low-pass filter of splats, and confetti has none",
+        ),
+        (
+            "--method pull-push --widen small",
+            "--widen is of the low-pass filter of splats, and pull-push has none",
+        ),
+        ("--filter none --lowpass 2", "perspective-ewa has none"),
+        ("--epsilon 0", "above 0"),
         ("--epsilon nan", "epsilon is NaN"),
         ("--frames 0", "--frames"),
         ("--camera a.json --fov 20", "cannot be used with"),

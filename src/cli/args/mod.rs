@@ -227,7 +227,7 @@ impl Render {
     /// The given method, if any: see [`RenderSettings::method`].
     ///
     /// # Errors
-    /// [`surfel::Error::Usage`] if a size of points is given for another method.
+    /// [`surfel::Error::Usage`] as of [`RenderSettings::method`].
     pub fn method(&self) -> Result<Option<Method>> {
         self.render_settings.method(self.method, &self.axes)
     }

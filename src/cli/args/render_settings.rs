@@ -5,6 +5,7 @@ use crate::cli::values::{Background, background, choice, number, pixel_filter, w
 use clap::Args;
 use clap::builder::ArgPredicate;
 use surfel::settings::methods::{self, Method};
+use surfel::settings::splatting::Filter;
 use surfel::settings::{Alpha, Choice, Cull, Edges, Hierarchy, Shading, Widen};
 use surfel::{Error, Result, Settings};
 
@@ -29,13 +30,13 @@ pub struct RenderSettings {
     /// Background: transparent, sRGB codes from 0 to 255, or a CSS colour such as #fff or white
     #[arg(long, value_name = "R,G,B|COLOR|transparent", default_value = "transparent", value_parser = background, allow_hyphen_values = true)]
     pub background: Background,
-    /// Variance of the anti-aliasing filter, px² [default: the method's, mostly 1]
+    /// Variance of the anti-aliasing filter, px², of methods that have one, such as perspective-ewa and object-ewa [default: 1]
     #[arg(long, value_name = "VARIANCE_PX2", value_parser = number::<f32>, allow_hyphen_values = true)]
     pub lowpass: Option<f32>,
     /// Filter of pixels after shading, with its part of the anti-aliasing filter's variance: gaussian:VARIANCE_PX2, or none [default: the method's]
     #[arg(long, value_name = "none|gaussian[:VARIANCE_PX2]", value_parser = pixel_filter)]
     pub pixel_filter: Option<f32>,
-    /// Which splats the anti-aliasing filter widens [default: the method's]
+    /// Which splats the anti-aliasing filter widens, of methods that have one [default: the method's]
     #[arg(long, value_parser = choice::<Widen>())]
     pub widen: Option<Widen>,
     /// Where a splat's kernel ends, in standard deviations [default: the method's; perspective-ewa: 3.5]
@@ -71,17 +72,39 @@ impl RenderSettings {
     /// The method, of which `asked` is the given one: points of a fixed size, if a size is given.
     ///
     /// # Errors
-    /// [`surfel::Error::Usage`] if a size of points is given for another method.
+    /// [`surfel::Error::Usage`] if a size of points is given for another method, or an option of the low-pass filter for a method without one.
     pub(super) fn method(&self, asked: Option<Method>, axes: &Axes) -> Result<Option<Method>> {
-        let Some(size) = self.point_size else { return Ok(asked) };
-        let method = asked.unwrap_or(methods::points::METHOD);
-        if self.settings(axes, &method).draws_points() {
-            return Ok(Some(method));
+        let asked = asked.or(self.point_size.map(|_| methods::points::METHOD));
+        let method = asked.unwrap_or(Method::ALL[0]);
+        let settings = self.settings(axes, &method);
+        if let Some(size) = self.point_size
+            && !settings.draws_points()
+        {
+            return Err(Error::Usage(format!(
+                "--point-size {size} is of --method points, and {} draws discs: leave one of them out",
+                method.name
+            )));
         }
-        Err(Error::Usage(format!(
-            "--point-size {size} is of --method points, and {} draws discs: leave one of them out",
-            method.name
-        )))
+        self.check_lowpass(&settings, &method)?;
+        Ok(asked)
+    }
+
+    /// Returns an error if an option of the low-pass filter is given, and `settings` of `method` have no such filter.
+    fn check_lowpass(&self, settings: &Settings, method: &Method) -> Result<()> {
+        let options = [("--lowpass", self.lowpass.is_some()), ("--widen", self.widen.is_some())];
+        let given = options.into_iter().find(|(_, given)| *given);
+        match given {
+            Some((option, _))
+                if settings.pull_push.is_some() || settings.splatting.filter == Filter::None =>
+            {
+                Err(Error::Usage(format!(
+                    "{option} is of the low-pass filter of splats, and {} has none: leave it out, or choose a method with one, such as \
+                     perspective-ewa",
+                    method.name
+                )))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// The settings of a method with these changes and those of `axes`.

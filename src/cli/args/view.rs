@@ -71,7 +71,7 @@ impl View {
     /// The given method, if any: points of a fixed size, if a size is given.
     ///
     /// # Errors
-    /// [`surfel::Error::Usage`] if a size of points is given for another method.
+    /// [`surfel::Error::Usage`] as of [`RenderSettings::method`].
     pub fn method(&self) -> Result<Option<Method>> {
         self.render_settings.method(self.method, &self.axes)
     }
