@@ -114,7 +114,7 @@ fn properties(report: &Report) -> String {
     }
     let _ = writeln!(text, "understood: {}", listed(&report.understood, usize::MAX));
     let numbers = if numbers.is_empty() { "none".into() } else { numbers.join(", ") };
-    let _ = writeln!(text, "for --color-by: {numbers}");
+    let _ = writeln!(text, "for --color-by, beside x, y, z, height, radius and normal: {numbers}");
     if !lists.is_empty() {
         let _ = writeln!(text, "skipped: {}", listed(&lists, usize::MAX));
     }

@@ -21,7 +21,7 @@ fn inputs_become_one_binary_file_that_renders_the_same() {
         "element vertex: 53",
         "  float radius",
         "  uchar red",
-        "for --color-by: none",
+        "for --color-by, beside x, y, z, height, radius and normal: none",
     ] {
         assert!(text.contains(part), "no `{part}` in\n{text}");
     }
@@ -215,7 +215,7 @@ fn sharp_edges_are_found_and_written() {
     assert!(run.err.contains(" clipped at sharp edges\nc.ply: 5,000 surfels\n"), "{}", run.err);
     let text = info(&program, "c.ply");
     assert!(text.contains("\n  float clip0x\n") && text.contains("\n  uchar clip_concave\n"), "{text}");
-    assert!(text.contains("for --color-by: none"), "{text}");
+    assert!(text.contains("for --color-by, beside x, y, z, height, radius and normal: none"), "{text}");
     // Clip lines stay, with or without another search.
     program.run("convert c.ply -o d.ply").text();
     assert_eq!(program.run("convert c.ply -o e.ply --sharp 90").err, "e.ply: 5,000 surfels\n");

@@ -199,7 +199,12 @@ fn columns_can_be_named() {
     let program = Program::new();
     program.write("a.txt", plane(|x, y| format!("{x} {y}")));
     let run = program.run("info a.txt --columns y,x,z,c,d");
-    assert!(run.text().contains("understood: y x z\nfor --color-by: c, d\n"), "{}", run.text());
+    assert!(
+        run.text()
+            .contains("understood: y x z\nfor --color-by, beside x, y, z, height, radius and normal: c, d\n"),
+        "{}",
+        run.text()
+    );
     let wrong = program.run("info a.txt --columns x,y,z");
     assert!(wrong.error(1).contains("5 values, and 3 columns are named"), "{}", wrong.err);
     program.write("b.csv", "Tree,Foo,Bar,Baz\noak,1,2,3\nash,4,5,6\n");

@@ -12,7 +12,7 @@ fn a_file_is_described() {
         "element vertex: 4",
         "  float nx",
         "understood: x y z nx ny nz radius",
-        "for --color-by: none",
+        "for --color-by, beside x, y, z, height, radius and normal: none",
         "points: 4",
         "surfels: 3",
         // Those of the points, without their discs.
@@ -41,7 +41,7 @@ fn nothing_is_estimated_unless_it_is_asked_for() {
     let given = text("");
     assert!(
         given.ends_with(
-            "understood: x y z nx ny nz radius\nfor --color-by: none\nskipped: l\nskipped elements: none\npoints: 4\nbounds: [0, 0, 0] \
+            "understood: x y z nx ny nz radius\nfor --color-by, beside x, y, z, height, radius and normal: none\nskipped: l\nskipped elements: none\npoints: 4\nbounds: [0, 0, 0] \
              to [4, 0, 0]\nup: 0,1,0\nradius: 1 to 2, median 2\ncolours: none\nnormals: 2 given, 1 to be estimated\nradii: 2 given, 1 to \
              be estimated\nleft out: 1 without a finite position, 0 less than a tenth opaque\n"
         ),
@@ -64,7 +64,13 @@ fn several_inputs_are_described_one_by_one() {
     let starts =
         ["a.ply: PLY, ascii\n", "\nb.xyz: text, ascii\n", "\nscene:sphere?points=9: built-in scene\n"];
     assert!(starts.iter().all(|start| text.contains(start)), "{text}");
-    assert!(text.contains(&format!("\nfor --color-by: {}\n", all.join(", "))), "{text}");
+    assert!(
+        text.contains(&format!(
+            "\nfor --color-by, beside x, y, z, height, radius and normal: {}\n",
+            all.join(", ")
+        )),
+        "{text}"
+    );
     let run = program.run("info a.ply b.xyz --json");
     let values: serde_json::Value = serde_json::from_str(run.text()).unwrap();
     assert_eq!([&values[0]["input"], &values[1]["input"]], ["a.ply", "b.xyz"]);
