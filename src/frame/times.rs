@@ -126,7 +126,7 @@ impl Statistics {
 impl fmt::Display for Times {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{:<16}{:>12}{:>12}{:>12}  ms", "pass", "median", "min", "max")?;
-        let frame = self.frame().map(|times| ("frame (CPU)", times));
+        let frame = self.frame().map(|times| ("frame (wall)", times));
         self.passes().chain(frame).try_for_each(|(label, Statistics { median, min, max, .. })| {
             writeln!(f, "{label:<16}{median:>12.3}{min:>12.3}{max:>12.3}")
         })
