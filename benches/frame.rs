@@ -13,7 +13,7 @@ use support::{Result, Row, Table, frames};
 use surfel::bench::engine::DeviceEngine;
 use surfel::geometry::{Camera, Extent, Parts};
 use surfel::load::load;
-use surfel::settings::{Alpha, Cull, Shading};
+use surfel::settings::{Alpha, Cull, Edges, Shading};
 use surfel::verify::scenes;
 use surfel::vk::Device;
 use surfel::{Rasterizer, RenderOptions, Scene, Settings};
@@ -39,20 +39,19 @@ fn defaults() -> Vec<String> {
     scan.into_iter().chain(spheres).collect()
 }
 
-/// Options, as of `surfel render`, with the frames that they mean.
-fn variants() -> [(&'static str, Rasterizer, Settings); 7] {
+/// Options, as of `surfel render`, with the frames that they mean: the default, and what it takes without one of its parts.
+fn variants() -> [(&'static str, Rasterizer, Settings); 8] {
     let default = || Settings { shading: Shading::Colour, background: Some([1.0; 3]), ..Settings::default() };
+    let mask = || Settings { alpha: Alpha::Mask, edges: Edges::Nearest, ..default() };
+    let alone = Settings { cull: Cull::None, pixel_filter: 0.0, ..mask() };
     [
         ("", Rasterizer::Compute, default()),
         (", `--lowpass 0`", Rasterizer::Compute, Settings { lowpass: 0.0, ..default() }),
         (", `--cull back`", Rasterizer::Compute, Settings { cull: Cull::Back, ..default() }),
-        (", `--cull auto`", Rasterizer::Compute, Settings { cull: Cull::Auto, ..default() }),
-        (", `--alpha coverage`", Rasterizer::Compute, Settings { alpha: Alpha::Coverage, ..default() }),
-        (
-            ", `--pixel-filter gaussian`",
-            Rasterizer::Compute,
-            Settings { pixel_filter: Settings::DEFAULT_PIXEL_FILTER, ..default() },
-        ),
+        (", `--pixel-filter none`", Rasterizer::Compute, Settings { pixel_filter: 0.0, ..default() }),
+        (", `--edges nearest`", Rasterizer::Compute, Settings { edges: Edges::Nearest, ..default() }),
+        (", `--alpha mask`", Rasterizer::Compute, mask()),
+        (", `--cull none --alpha mask --pixel-filter none`", Rasterizer::Compute, alone),
         (", `--rasterizer draw`", Rasterizer::Draw, default()),
     ]
 }
