@@ -21,7 +21,7 @@ pub struct Instance {
 
 /// The content of a frame: one scene, or a list of instances. An empty list shows nothing.
 ///
-/// APIs accept `impl Into<Instances>`: `&scene`, `&[instance]`, `&vec_of_instances`.
+/// APIs accept `impl Into<Instances>`: `&scene` of an `Arc<Scene>`, `&[instance]`, `&vec_of_instances`.
 #[derive(Clone, Copy)]
 pub enum Instances<'a, S = Arc<Scene>> {
     /// One scene, whose space is the world's.

@@ -9,7 +9,7 @@ const SCALES: [f64; 5] = [0.63, 0.5, 0.4, 0.32, MIN_SCALE];
 /// The least resolution scale: coarser pictures are unreadable.
 pub const MIN_SCALE: f64 = 0.25;
 
-/// The level of detail of full quality, px: the picture is at most 0.12 dB farther from the exact one than that of all points (the guide,
+/// The level of detail of full quality, px: the picture is at most 0.30 dB farther from the exact one than that of all points (the guide,
 /// Accuracy, Levels of detail), and its cost does not grow with the points that share a pixel.
 const FULL_LOD: f64 = 1.0;
 /// The finest level of detail above the full one, px: finer ones differ less than is worth a change.

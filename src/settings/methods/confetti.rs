@@ -4,7 +4,7 @@
 //! ```text
 //! footprint    elliptical disc → its projection, as of a textured triangle (§6.3)
 //! visibility   nearest disc + ε along the view-projection (§6.4)
-//! attribute    Σ ψ (rgb, κ), light at each splat, over what is within ε (equation 8)
+//! attribute    Σ ψ (rgb, 1/z), lit at each splat, over the splats within ε (equation 8)
 //! normalize    / Σ ψ (equation 7, §6.5)
 //! ```
 

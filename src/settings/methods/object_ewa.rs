@@ -4,11 +4,11 @@
 //! ```text
 //! footprint    V + J⁻¹ H J⁻ᵀ in the tangent plane (equation 7) → the parallelogram that it stretches (§5.2)
 //! visibility   opaque quads + ε along the viewing ray (§5.1)
-//! attribute    Σ w (rgb, κ), light at each splat, over what is within ε (§5.2)
-//! normalize    / Σ w (what §7 calls per-pixel normalization); or not, with weights that every surfel brings (per-surfel)
+//! attribute    Σ w (rgb, 1/z), lit at each splat, over the splats within ε (§5.2)
+//! normalize    / Σ w: per-pixel normalization (§7); or weights of the surfels: per-surfel normalization (§7.1)
 //! ```
 //!
-//! While the camera moves, sums are not divided; when it rests, they are (§8): [`Progressive`].
+//! [`Progressive`] divides at each pixel only while the camera rests (§8).
 //!
 //! `J` is singular edge-on, where the parallelogram would reach behind the eye: its scale is limited to the range from ½ to 2.
 

@@ -3,7 +3,7 @@
 //! ```text
 //! footprint    disc → the ellipse that its rim projects to (§4.4), + H (equation 3)
 //! visibility   nearest tangent plane + ε along the viewing ray (§6, first pass)
-//! attribute    Σ w (n, rgb, κ) over what is within ε (§6, second pass)
+//! attribute    Σ w (n, rgb, 1/z) over the splats within ε (§6, second pass)
 //! normalize    / Σ w (§6, third pass), light, × the covered part of the pixel
 //! filter       ∗ most of H, after light, so that outlines are filtered, too
 //! ```

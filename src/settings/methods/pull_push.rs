@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! project, fetch   surfels, lines, triangles → the nearest point of each pixel (§3.1)
-//! pull             means of what is in front, fine to coarse (§3.2)
+//! pull             means of the discs in front, fine to coarse (§3.2)
 //! push             holes filled, hidden points replaced, coarse to fine (§3.3)
 //! shade            picture, normal, depth (§3.4)
 //! ```

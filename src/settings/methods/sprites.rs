@@ -3,7 +3,7 @@
 //! ```text
 //! footprint    disc → a square of the disc's size (equation 1), in it the ellipse of parallel projection (equation 2)
 //! visibility   depth corrected at every pixel (equation 4) + ε along the viewing ray (§3.3)
-//! attribute    Σ w (rgb, κ), light at each splat, over what is within ε (§3.3)
+//! attribute    Σ w (rgb, 1/z), lit at each splat, over the splats within ε (§3.3)
 //! normalize    / Σ w (§3.4)
 //! ```
 //!
