@@ -30,5 +30,7 @@ chapter!(methods, "methods.md", "epsilon", "footprints", "coverage", "edl", "ao"
 chapter!(accuracy, "accuracy.md");
 chapter!(cost, "cost.md");
 chapter!(embedding, "embedding.md");
-chapter!(architecture, "architecture.md");
+chapter!(architecture, "architecture.md";
+    chapter!(measurements, "architecture/measurements.md");
+);
 chapter!(troubleshooting, "troubleshooting.md");

@@ -40,6 +40,40 @@ fn the_table_of_needs_equals_the_documentation() {
     );
 }
 
+/// The row of a method in the guide's table of presets; "–" where an option has no effect on it.
+fn preset(method: &Value) -> String {
+    let (settings, axes) = (&method["settings"], &method["axes"]);
+    let text = |value: &Value| value.as_str().unwrap_or("–").to_owned();
+    let number = |value: &Value| ((value.as_f64().unwrap() * 100.0).round() / 100.0).to_string();
+    let only_if = |has: bool, cell: String| if has { cell } else { "–".into() };
+    let has_kernel = axes["kernel"] == "gaussian" && axes["visibility"] != "nearest";
+    let is_filtered = axes["filter"].is_string() && axes["filter"] != "none";
+    let pixel_filter = &settings["pixel_filter"];
+    let cells = [
+        format!("`{}`", text(&method["name"])),
+        only_if(has_kernel, number(&settings["cutoff"])),
+        only_if(is_filtered, number(&settings["lowpass"])),
+        only_if(is_filtered, text(&settings["widen"])),
+        if pixel_filter == 0.0 { "none".into() } else { number(pixel_filter) },
+        text(&settings["cull"]),
+        text(&settings["alpha"]),
+        text(&settings["edges"]),
+        text(&axes["shade"]),
+    ];
+    format!("| {} |\n", cells.join(" | "))
+}
+
+#[test]
+fn the_table_of_presets_equals_the_documentation() {
+    let program = Program::new();
+    let methods = json(&program, "methods --json");
+    let head = "| method | `--cutoff` | `--lowpass` | `--widen` | `--pixel-filter` | `--cull` | `--alpha` | `--edges` | `--shade` |\n";
+    let rows: String = methods.as_array().unwrap().iter().map(preset).collect();
+    let table = format!("{head}|{}\n{rows}", "---|".repeat(9));
+    let written = concat!(env!("CARGO_MANIFEST_DIR"), "/src/guide/methods.md");
+    assert!(std::fs::read_to_string(written).unwrap().contains(&table), "write into {written}:\n{table}");
+}
+
 #[test]
 fn a_file_is_described_in_json() {
     let program = Program::new();
