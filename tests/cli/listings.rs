@@ -54,7 +54,7 @@ fn preset(method: &Value) -> String {
         only_if(has_kernel, number(&settings["cutoff"])),
         only_if(is_filtered, number(&settings["lowpass"])),
         only_if(is_filtered, text(&settings["widen"])),
-        if pixel_filter == 0.0 { "none".into() } else { number(pixel_filter) },
+        if *pixel_filter == 0.0_f64 { "none".into() } else { number(pixel_filter) },
         text(&settings["cull"]),
         text(&settings["alpha"]),
         text(&settings["edges"]),
