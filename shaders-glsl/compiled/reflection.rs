@@ -2265,7 +2265,7 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Group, instance) == 12);
     const _: () = assert!(std::mem::size_of::<Group>() == 16);
 
-    /// `Hierarchy`, 72 bytes, first in `shaders-glsl/attribute.glsl`.
+    /// `Hierarchy`, 80 bytes, first in `shaders-glsl/attribute.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Hierarchy {
@@ -2287,6 +2287,8 @@ pub mod layout {
         pub frame_number: u32,
         /// Byte 68.
         pub fronts: u32,
+        /// Byte 72.
+        pub first_tile: [u32; 2],
     }
     const _: () = assert!(std::mem::offset_of!(Hierarchy, starts) == 0);
     const _: () = assert!(std::mem::offset_of!(Hierarchy, attribute_rows) == 40);
@@ -2297,7 +2299,8 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Hierarchy, most_steps) == 60);
     const _: () = assert!(std::mem::offset_of!(Hierarchy, frame_number) == 64);
     const _: () = assert!(std::mem::offset_of!(Hierarchy, fronts) == 68);
-    const _: () = assert!(std::mem::size_of::<Hierarchy>() == 72);
+    const _: () = assert!(std::mem::offset_of!(Hierarchy, first_tile) == 72);
+    const _: () = assert!(std::mem::size_of::<Hierarchy>() == 80);
 
     /// `IncompleteFrame`, 4 bytes, first in `shaders-glsl/attribute.glsl`.
     #[repr(C)]

@@ -19,6 +19,7 @@ layout(push_constant) uniform Hierarchy {
     uint most_steps; // of a walk
     uint frame_number;
     uint fronts; // 1: only splats that face the eye, before pass sides; 2: in the tiles that pass hidden has marked
+    uvec2 first_tile; // column and row of the dispatch's first tile
 } hierarchy;
 
 layout(constant_id = 31) const bool COVERAGE = false; // α is the covered part of a pixel
@@ -74,7 +75,7 @@ const uint ROW_STEP = LANES / TILE;
 // the load.
 uvec2 tile_origin() {
     uint half_way = (gl_NumWorkGroups.y + 1) / 2, y = gl_WorkGroupID.y;
-    return TILE * uvec2(gl_WorkGroupID.x, y < half_way ? 2 * y : 2 * (y - half_way) + 1);
+    return TILE * (hierarchy.first_tile + uvec2(gl_WorkGroupID.x, y < half_way ? 2 * y : 2 * (y - half_way) + 1));
 }
 
 // The lane's pixel number `row`, relative to the tile.

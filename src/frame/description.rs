@@ -58,17 +58,22 @@ pub fn describe(
     let uniforms = Uniforms::new(camera, settings, options.size, scenes)?;
     let perspective = camera.projection()?.perspective;
     let distinct = Distinct::new(scenes);
-    let (selections, extent) = match options.rasterizer {
+    let (mut selections, extent) = match options.rasterizer {
         RasterizerChoice::Require(Rasterizer::Draw) => {
             (distinct.scenes.iter().map(|scene| Selection::none(scene)).collect(), ListExtent::default())
         }
         _ => select(device, &distinct, &uniforms, perspective),
     };
     let workgroup = workgroup_of(device, extent);
-    let splats_per_tile = total_splats_per_tile(scenes, camera, options.size, lod);
+    let is_seen = selections.iter().any(|selection| !selection.is_empty());
+    let splats_per_tile =
+        if is_seen { total_splats_per_tile(scenes, camera, options.size, lod) } else { 0.0 };
     // With a bound on the work of a tile there are no slices.
     let may_slice = options.most_splats.is_none() && may_slice(scenes);
     let sliced = may_slice && slicing.needs_slices(scenes, splats_per_tile);
+    if sliced {
+        find_tiles(device, &distinct, &uniforms, perspective, options.size, &mut selections);
+    }
     let streams: Vec<_> = scenes.iter().map(|placed| placed.scene.streams()).collect();
     let base = |options: &RenderOptions, rasterizer| {
         Variant::new(&streams, perspective, settings, options, rasterizer)
@@ -125,10 +130,7 @@ fn select(
 ) -> (Vec<Selection>, ListExtent) {
     let of_scene = |(scene, instances): (&&Scene, &Vec<usize>)| {
         let batches = batches_of(device, scene, padded_instances(instances.len() as u64));
-        let culling = |instance: u64| {
-            let view = uniforms.instances.get(instances[instance as usize]).unwrap_or(&uniforms.view);
-            GroupCulling::new(&uniforms.frame, view, perspective, scene.level_table())
-        };
+        let culling = culling(scene, instances, uniforms, perspective);
         let selection = Selection::new(scene, &batches, instances.len() as u64, culling);
         let extent = extent_of(scene, &batches, &selection.room(None));
         (selection, extent)
@@ -136,6 +138,35 @@ fn select(
     let (selections, extents): (Vec<_>, Vec<_>) =
         distinct.scenes.iter().zip(&distinct.instances).map(of_scene).unzip();
     (selections, extents.into_iter().fold(ListExtent::default(), ListExtent::with))
+}
+
+/// Finds the tiles that selected groups may cover, of a picture of `size` px.
+fn find_tiles(
+    device: &Device,
+    distinct: &Distinct<'_>,
+    uniforms: &Uniforms,
+    perspective: bool,
+    size: [u32; 2],
+    selections: &mut [Selection],
+) {
+    let scenes = distinct.scenes.iter().zip(&distinct.instances);
+    for ((scene, instances), selection) in scenes.zip(selections) {
+        let batches = batches_of(device, scene, padded_instances(instances.len() as u64));
+        selection.find_tiles(scene, &batches, culling(scene, instances, uniforms, perspective), size);
+    }
+}
+
+/// What culls the groups of an instance of a scene, which has these instances in the frame.
+fn culling<'a>(
+    scene: &'a Scene,
+    instances: &'a [usize],
+    uniforms: &'a Uniforms,
+    perspective: bool,
+) -> impl Fn(u64) -> GroupCulling<'a> {
+    move |instance| {
+        let view = uniforms.instances.get(instances[instance as usize]).unwrap_or(&uniforms.view);
+        GroupCulling::new(&uniforms.frame, view, perspective, scene.level_table())
+    }
 }
 
 /// The level of detail of a frame, px: that of the settings, or the least one that keeps to the most points.

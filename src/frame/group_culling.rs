@@ -1,5 +1,7 @@
 //! Culling of groups of clusters on the CPU, as `cull.glsl` culls clusters, without their cones of normals.
 
+use super::targets::TILE;
+use super::tile_rect::TileRect;
 use crate::geometry::LevelTable;
 use crate::scene::GroupBounds;
 use crate::vk::shaders::layout::{Frame, View};
@@ -67,32 +69,69 @@ impl<'a> GroupCulling<'a> {
         if group.is_empty() {
             return Some(Reason::Invalid);
         }
-        let bounds = EyeBox { low: group.low.as_dvec3() - self.eye, high: group.high.as_dvec3() - self.eye };
+        let bounds = self.eye_box(group);
         if self.levels.is_some_and(|table| !self.has_drawn_level(table, surfels, &bounds)) {
             return Some(Reason::Level);
         }
-        let radius = f64::from(group.radius);
-        let moved = self.epsilon * radius;
+        let moved = self.epsilon * f64::from(group.radius);
         let depth = self.rows[2].xyz();
         if self.perspective && bounds.of(depth, 0.0)[1] + moved * depth.length() < 0.0 {
             return Some(Reason::Behind);
         }
-        self.is_outside(3.0 * LARGEST_STRETCH * radius + moved, &bounds).then_some(Reason::Outside)
+        self.is_outside(self.reach(group), &bounds).then_some(Reason::Outside)
+    }
+
+    /// The tiles that splats of a group may cover, of a picture of `size` px.
+    pub fn tiles(&self, group: &GroupBounds, size: [u32; 2]) -> TileRect {
+        let bounds = self.eye_box(group);
+        let reach = self.reach(group);
+        let mut tiles = TileRect::all(size);
+        if !self.is_far(reach, &bounds) {
+            return tiles;
+        }
+        for axis in 0..2 {
+            let beyond = |outward: f64, tile: u32| {
+                self.is_beyond(axis, outward, f64::from(TILE * tile), reach, &bounds)
+            };
+            let all = tiles.end[axis];
+            tiles.first[axis] = last_of(0, all, |tile| beyond(1.0, tile));
+            tiles.end[axis] = all - last_of(0, all, |tile| beyond(-1.0, all - tile));
+        }
+        tiles
+    }
+
+    fn eye_box(&self, group: &GroupBounds) -> EyeBox {
+        EyeBox { low: group.low.as_dvec3() - self.eye, high: group.high.as_dvec3() - self.eye }
+    }
+
+    /// How far splats of a group extend from the centres of their discs, as in `cull.glsl`.
+    fn reach(&self, group: &GroupBounds) -> f64 {
+        (3.0 * LARGEST_STRETCH + self.epsilon) * f64::from(group.radius)
+    }
+
+    /// Whether no disc is so near to the eye that [`GroupCulling::is_beyond`] does not hold. NaN fails the test.
+    fn is_far(&self, reach: f64, bounds: &EyeBox) -> bool {
+        let depth = self.rows[2].xyz();
+        !self.perspective || bounds.of(depth, 0.0)[0] >= 2.0 * reach * depth.length()
     }
 
     /// Whether all splats of discs with centres in the box, that extend by `reach`, are beyond a side of the picture.
     fn is_outside(&self, reach: f64, bounds: &EyeBox) -> bool {
-        let depth = self.rows[2].xyz();
-        // The sides' bounds hold where no disc is too near to the eye. NaN fails the test.
-        let far = !self.perspective || bounds.of(depth, 0.0)[0] >= 2.0 * reach * depth.length();
-        let beyond = |axis: usize, outward: f64, side: f64| {
-            let (row, moved) = (self.rows[axis], side + outward * self.margin);
-            let (gradient, constant) =
-                if self.perspective { (row.xyz() - moved * depth, 0.0) } else { (row.xyz(), row.w - moved) };
-            let [least, _] = bounds.of(outward * gradient, outward * constant);
-            least > 2.0 * reach * gradient.length()
+        let beyond = |axis, outward, side| self.is_beyond(axis, outward, side, reach, bounds);
+        self.is_far(reach, bounds)
+            && (0..2).any(|axis| beyond(axis, -1.0, 0.0) || beyond(axis, 1.0, self.viewport[axis]))
+    }
+
+    /// Whether they are all beyond pixel `side` of an axis: below it with `outward` −1, above it with 1.
+    fn is_beyond(&self, axis: usize, outward: f64, side: f64, reach: f64, bounds: &EyeBox) -> bool {
+        let (row, moved) = (self.rows[axis], side + outward * self.margin);
+        let (gradient, constant) = if self.perspective {
+            (row.xyz() - moved * self.rows[2].xyz(), 0.0)
+        } else {
+            (row.xyz(), row.w - moved)
         };
-        far && (0..2).any(|axis| beyond(axis, -1.0, 0.0) || beyond(axis, 1.0, self.viewport[axis]))
+        let [least, _] = bounds.of(outward * gradient, outward * constant);
+        least > 2.0 * reach * gradient.length()
     }
 
     /// Whether some of these surfels, with centres in the box, may be of the levels that are drawn there.
@@ -120,11 +159,72 @@ impl<'a> GroupCulling<'a> {
     }
 }
 
+/// The last number from `from` up to `to` that holds, if all before it do; `from` if none does.
+fn last_of(from: u32, to: u32, holds: impl Fn(u32) -> bool) -> u32 {
+    let (mut low, mut high) = (from, to);
+    while low < high {
+        let middle = low + (high - low).div_ceil(2);
+        if holds(middle) {
+            low = middle;
+        } else {
+            high = middle - 1;
+        }
+    }
+    low
+}
+
 impl EyeBox {
     /// Bounds of the values of gradient·p + constant at the points of the box.
     fn of(&self, gradient: DVec3, constant: f64) -> [f64; 2] {
         let (a, b) = (gradient * self.low, gradient * self.high);
         let margin = ROUNDING * (a.abs().max(b.abs()).element_sum() + constant.abs());
         [a.min(b).element_sum() + constant - margin, a.max(b).element_sum() + constant + margin]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    /// Pixel (64, 64) is straight ahead along z, with a focal length of 100 px.
+    fn culling(perspective: bool) -> GroupCulling<'static> {
+        let rows = if perspective {
+            [DVec4::new(100.0, 0.0, 64.0, 0.0), DVec4::new(0.0, 100.0, 64.0, 0.0), DVec4::Z]
+        } else {
+            [DVec4::new(10.0, 0.0, 0.0, 64.0), DVec4::new(0.0, 10.0, 0.0, 64.0), DVec4::Z]
+        };
+        let (eye, viewport) = (DVec3::ZERO, [128.0, 96.0]);
+        GroupCulling {
+            rows,
+            eye,
+            viewport,
+            margin: 2.0,
+            epsilon: 0.0,
+            perspective,
+            levels: None,
+            level_reach: 0.0,
+        }
+    }
+
+    fn group(centre: Vec3, size: f32) -> GroupBounds {
+        GroupBounds { low: centre - size, high: centre + size, radius: 0.01 }
+    }
+
+    #[test]
+    fn a_group_covers_the_tiles_around_its_image() {
+        let size = [128, 96];
+        for perspective in [true, false] {
+            let tiles =
+                |x, y, z, size_of| culling(perspective).tiles(&group(Vec3::new(x, y, z), size_of), size);
+            // 0.2 units are 2 px at this distance, and discs and low-pass filter less than 6 px.
+            assert_eq!(tiles(0.4, 0.4, 10.0, 0.1), TileRect { first: [7, 7], end: [10, 10] });
+            assert_eq!(tiles(-6.3, 0.4, 10.0, 0.1), TileRect { first: [0, 7], end: [1, 10] });
+            assert!(tiles(9.0, 0.0, 10.0, 0.1).is_empty());
+            let wide = tiles(0.0, 0.0, 10.0, 3.0);
+            assert!(wide.first[0] <= 4 && wide.end[0] >= 12 && wide.size()[0] < 16, "{wide:?}");
+        }
+        // Discs around the eye may be anywhere.
+        assert_eq!(culling(true).tiles(&group(Vec3::ZERO, 0.1), size), TileRect::all(size));
     }
 }

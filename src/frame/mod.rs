@@ -58,6 +58,7 @@ mod surfel_order;
 pub(crate) mod target_descriptions;
 pub(crate) mod targets;
 mod tile_list;
+mod tile_rect;
 mod tile_workgroup;
 pub mod times;
 mod traffic;

@@ -5,6 +5,7 @@ use super::resource::Resource;
 use super::scene_resources::{InstanceRun, SceneResources};
 use super::splat_list::SplatList;
 use super::targets::RenderTargets;
+use super::tile_rect::TileRect;
 use super::variant::{SceneVariant, Variant};
 use super::visible_clusters;
 use crate::vk::shaders::Module;
@@ -76,6 +77,8 @@ pub struct Frame<'a> {
     pub splats: Option<&'a SplatList>,
     /// Number of splats, padding included.
     pub splat_count: u64,
+    /// The tiles that the splats of each slice may cover, of a sliced frame.
+    pub tiles_of_slices: &'a [TileRect],
     /// See [`super::RenderOptions::most_splats`].
     pub most_splats: Option<u32>,
     /// Number of the frame.
@@ -124,6 +127,9 @@ impl PreparedPass {
                 let uses = frame.uses(&self.accesses);
                 let mut enc = rec.pass(self.pass.name, &uses);
                 for slice in 0..self.slices(frame) {
+                    if frame.tiles([slice, self.slices(frame)]).is_empty() {
+                        continue;
+                    }
                     if slice > 0 {
                         enc.barrier(&uses);
                     }
@@ -186,11 +192,12 @@ impl PreparedPass {
                 let sets = sets_with(frame.view, pyramid);
                 match (domain, frame.splats) {
                     (Domain::Tiles | Domain::FrontTiles, Some(splats)) => {
-                        let [columns, rows] = frame.targets.tiles();
                         let slices = [slice, self.slices(frame)];
+                        let tiles = frame.tiles(slices);
+                        let [columns, rows] = tiles.size();
                         let fronts = if domain == Domain::FrontTiles { FRONTS } else { 0 };
                         let hierarchy = splats.hierarchy(slices, frame.most_steps(), frame.number);
-                        let hierarchy = Hierarchy { fronts, ..hierarchy };
+                        let hierarchy = Hierarchy { fronts, first_tile: tiles.first, ..hierarchy };
                         enc.dispatch(pipeline, &sets, &hierarchy, [columns, rows, 1]);
                     }
                     (Domain::WholeTiles, Some(splats)) => {
@@ -277,6 +284,14 @@ impl<'a> Frame<'a> {
         let lanes = u64::from(self.variant.workgroup.lanes);
         let steps = u64::from(most).div_ceil(lanes) * (lanes / 2 + 2);
         steps.clamp(1, i32::MAX as u64) as u32
+    }
+
+    /// The tiles of a dispatch over tiles: all where it is the first slice, which initializes them, or the last one, which completes them;
+    /// otherwise those that its splats may cover.
+    fn tiles(&self, [slice, slices]: [u32; 2]) -> TileRect {
+        let is_between = slice > 0 && slice + 1 < slices;
+        let of_slice = self.tiles_of_slices.get(slice as usize).filter(|_| is_between);
+        of_slice.copied().unwrap_or_else(|| TileRect::all(self.targets.size))
     }
 
     /// The buffers and images of these resources that the frame has, with their accesses.

@@ -14,6 +14,7 @@ use super::scene_resources::{InstanceRun, Needs, SceneResources};
 use super::slicing::Slicing;
 use super::splat_list::{ListExtent, SplatList, padded_instances};
 use super::targets::{HostBindings, RenderTargets, check_size};
+use super::tile_rect::{TileRect, tiles_of_slices};
 use super::uniforms::{self, Uniforms};
 use super::variant::{SceneVariant, Variant};
 use super::variant_resources::{VariantResources, ViewSet, prepared};
@@ -48,6 +49,8 @@ pub struct FrameResources {
     splats: Option<Arc<SplatList>>,
     /// Number of splats, padding included.
     splat_count: u64,
+    /// The tiles that the splats of each slice may cover, of a sliced frame.
+    tiles_of_slices: Vec<TileRect>,
     slicing: Slicing,
     pipelines: Pipelines,
     view: Arc<Buffer>,
@@ -96,6 +99,7 @@ impl FrameResources {
             placements: Vec::new(),
             splats: None,
             splat_count: 0,
+            tiles_of_slices: Vec::new(),
             slicing: Slicing::new(device)?,
             pipelines: Pipelines::new(host),
             view: Arc::new(Buffer::uniform(device, "frame", uniforms::BYTES)?),
@@ -182,7 +186,6 @@ impl FrameResources {
         settings: &Settings,
         size: [u32; 2],
     ) -> Result<Description> {
-        // Where the work of a tile is bounded there are no slices.
         let options = RenderOptions { size, ..self.options };
         describe(&self.device, &options, scenes, camera, settings, &self.slicing)
     }
@@ -295,6 +298,7 @@ impl FrameResources {
             targets,
             splats,
             splat_count: self.splat_count,
+            tiles_of_slices: &self.tiles_of_slices,
             most_splats: self.most_splats(),
             number: self.slicing.frame(),
             runs,
@@ -385,8 +389,9 @@ impl FrameResources {
         if !variant.is_tiled() {
             return Ok(Vec::new());
         }
-        let ListLayout { ranges, extent, splats } =
-            ListLayout::new(&self.device, scenes, &frame.selections, variant, &self.scenes);
+        let layout = ListLayout::new(&self.device, scenes, &frame.selections, variant, &self.scenes);
+        self.tiles_of_slices = tiles_of_slices(&layout, &frame.selections);
+        let ListLayout { ranges, extent, splats } = layout;
         self.splat_count = splats;
         if !self.splats.as_ref().is_some_and(|splats| splats.fits(variant, extent)) {
             self.created += 1;

@@ -6,6 +6,7 @@
 use super::group_culling::{GroupCulling, Reason};
 use super::splat_buffers::Batches;
 use super::splat_list::slots;
+use super::tile_rect::{Covered, TileRect};
 use crate::scene::{CLUSTER, GROUP, GroupBounds, Scene, groups};
 use crate::vk::shaders::layout::{Counts, Group};
 use bytemuck::Zeroable;
@@ -27,13 +28,15 @@ pub struct Selection {
     culled: Counts,
     /// Surfels of an instance.
     count: u64,
+    /// Of each list, the tiles that its groups may cover; empty unless they are found.
+    covered: Vec<Vec<Covered>>,
 }
 
 impl Selection {
     /// Nothing, for a frame that has no list.
     pub fn none(scene: &Scene) -> Self {
         let (lists, room, culled) = (Vec::new(), Vec::new(), Counts::zeroed());
-        Self { lists, room, compact: false, culled, count: scene.count() }
+        Self { lists, room, compact: false, culled, count: scene.count(), covered: Vec::new() }
     }
 
     /// Selects the groups of so many instances of a scene, which these cull.
@@ -95,6 +98,47 @@ impl Selection {
                 }
             }
         }
+    }
+
+    /// Finds the tiles that the groups may cover, of a picture of `size` px.
+    pub fn find_tiles<'a>(
+        &mut self,
+        scene: &Scene,
+        batches: &Batches,
+        culling: impl Fn(u64) -> GroupCulling<'a>,
+        size: [u32; 2],
+    ) {
+        let chunks = scene.chunks().len().max(1);
+        self.covered = scene.with_groups(|bounds| {
+            let covered = |(index, list): (usize, &Vec<Group>)| {
+                let [batch, chunk] = [index / chunks, index % chunks];
+                let first = batches.range(batch as u64).start;
+                let tiles = |group: &Group| match bounds {
+                    Some(bounds) => {
+                        let group_bounds = &bounds[chunk][group.first as usize / GROUP as usize];
+                        culling(first + u64::from(group.instance)).tiles(group_bounds, size)
+                    }
+                    None => TileRect::all(size),
+                };
+                let slots = |group: &Group| {
+                    let [slot, count] = [group.slot, group.count].map(u64::from);
+                    CLUSTER * slot..CLUSTER * (slot + count)
+                };
+                let groups = list.iter().filter(|group| group.instance != NO_INSTANCE);
+                groups.map(|group| Covered { splats: slots(group), tiles: tiles(group) }).collect()
+            };
+            self.lists.iter().enumerate().map(covered).collect()
+        });
+    }
+
+    /// Of each list, the splats of each group and the tiles that they may cover, if they are found.
+    pub fn covered(&self) -> &[Vec<Covered>] {
+        &self.covered
+    }
+
+    /// Whether no group may be drawn.
+    pub fn is_empty(&self) -> bool {
+        self.lists.iter().flatten().all(|group| group.instance == NO_INSTANCE)
     }
 
     fn add_culled(&mut self, reason: Reason, surfels: u32) {

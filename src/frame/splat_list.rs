@@ -22,6 +22,8 @@ const CLUSTERS: usize = 2;
 const CULLED_CLUSTER: u32 = 0;
 /// Level whose nodes are slices of 32,768 splats: the most that a walk over a tile visits in a dispatch.
 const SLICES: u32 = 5;
+/// Splats of a slice.
+pub const SLICE: u64 = FAN_OUT.pow(SLICES);
 /// Bytes of a box.
 pub const BOX: u64 = 16;
 /// Bytes of a row of attributes.
@@ -219,7 +221,7 @@ impl SplatList {
     /// Number of slices of so many splats.
     pub fn slices(&self, splats: u64) -> u32 {
         let above = self.levels.len() > SLICES as usize;
-        if above { splats.div_ceil(FAN_OUT.pow(SLICES)).max(1) as u32 } else { 1 }
+        if above { splats.div_ceil(SLICE).max(1) as u32 } else { 1 }
     }
 
     /// Push constants of a slice of the hierarchy; the whole of it, if that is the only slice.
@@ -239,6 +241,7 @@ impl SplatList {
             most_steps,
             frame_number,
             fronts: 0,
+            first_tile: [0; 2],
         }
     }
 

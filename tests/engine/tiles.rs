@@ -4,16 +4,17 @@ use crate::frames::{SIZE, agrees, all_outputs, camera, largest_difference, spher
 use crate::support::gpu::{Renderers, assert_silent, device, render};
 use crate::support::if_whole;
 use crate::support::settings::splats_alone;
-use glam::{DMat2, Vec3};
+use glam::{DMat2, DMat4, DVec3, Vec3};
+use std::sync::Arc;
 use surfel::frame::Splat;
-use surfel::geometry::{Colours, Curvature, Surfels};
+use surfel::geometry::{Camera, Colours, Curvature, Surfels};
 use surfel::picture::Picture;
 use surfel::settings::methods::Method;
 use surfel::settings::splatting::{Splatting, Visibility};
 use surfel::settings::{Alpha, Cull, Edges};
 use surfel::verify::scenes::bumpy_sphere;
 use surfel::vk::DeviceLimits;
-use surfel::{Error, Rasterizer, RenderOptions, Renderer, Scene, Settings};
+use surfel::{Error, Instance, Rasterizer, RenderOptions, Renderer, Scene, Settings};
 
 #[test]
 fn a_picture_may_be_larger_than_a_storage_buffer() {
@@ -217,6 +218,36 @@ fn crowded_tiles_show_all_splats() {
             assert!(difference < 1e-4, "{name}, {alpha:?}: {difference}");
         }
     }
+    assert_silent(&device);
+}
+
+/// The splats of a slice are those of a sphere and of parts of its neighbours: it covers few of the tiles.
+#[test]
+fn slices_cover_the_tiles_of_their_splats() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let (scene, size) = (Arc::new(Scene::upload(&device, &sphere(20_000)).unwrap()), [128, 64]);
+    let camera = Camera::look_at(DVec3::new(0.0, 0.0, 8.0), DVec3::ZERO, DVec3::Y, 0.5, 2.0, 0.1).unwrap();
+    let place = |x, y| DMat4::from_translation(DVec3::new(x, y, 0.0)) * DMat4::from_scale(DVec3::splat(0.5));
+    let places = [place(-3.0, 1.4), place(-1.1, -1.5), place(0.2, 0.6), place(1.4, -0.4), place(3.1, 1.2)];
+    let list = places.map(|place| Instance::new(&scene, place));
+    let settings = Settings::default();
+    let render = |camera: &Camera, rasterizer| {
+        let options = RenderOptions { size, profile: true, ..all_outputs(rasterizer) };
+        let mut renderer = Renderer::new(&device, options).unwrap();
+        let (picture, report) = renderer.render_picture(&list, camera, &settings).unwrap();
+        (picture, report.pass_times.iter().any(|time| time.label == "surface"))
+    };
+    let (raster, _) = render(&camera, Rasterizer::Draw);
+    let (compute, is_fused) = render(&camera, Rasterizer::Compute);
+    assert!(!is_fused && raster.colour.iter().filter(|colour| colour[3] > 0.0).count() > 500);
+    let difference = largest_difference(&raster, &compute);
+    assert!(difference < 1e-4, "{difference}");
+    // Nothing is seen, so nothing is divided.
+    let (eye, behind) = (DVec3::new(0.0, 0.0, 40.0), DVec3::new(0.0, 0.0, 99.0));
+    let away = Camera::look_at(eye, behind, DVec3::Y, 0.5, 2.0, 0.1).unwrap();
+    let (empty, is_fused) = render(&away, Rasterizer::Compute);
+    assert!(is_fused || device.capabilities().timestamps.is_none());
+    assert!(empty.colour.iter().all(|colour| colour[3] == 0.0));
     assert_silent(&device);
 }
 
