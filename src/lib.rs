@@ -64,6 +64,9 @@ pub mod picture;
 mod progress;
 pub mod scene;
 pub mod settings;
+#[cfg(test)]
+#[path = "../tests/support/skipping.rs"]
+mod skipping;
 pub mod verify;
 pub mod vk;
 

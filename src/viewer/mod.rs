@@ -193,13 +193,13 @@ mod tests {
     use std::sync::Arc;
     use surfel::vk::{Device, DeviceOptions};
 
-    /// A device with the validation layers. Without one the test is skipped with a message, or fails if `SURFEL_REQUIRE_GPU` is 1.
+    /// A device with the validation layers. Without one the test is skipped with a note, or fails if `SURFEL_REQUIRE_GPU` is 1.
     pub fn device(test: &str) -> Option<Arc<Device>> {
         match Device::open(&DeviceOptions { validate: true, ..Default::default() }) {
             Ok(device) => Some(device),
             Err(error) => {
                 assert_ne!(std::env::var("SURFEL_REQUIRE_GPU").as_deref(), Ok("1"), "{test}: {error}");
-                eprintln!("{test}: skipped: {error}");
+                crate::skipping::say_skipped(&error.to_string());
                 None
             }
         }

@@ -1,6 +1,7 @@
 //! The compiled shaders of the hosts in `tools/hosts` are those of their GLSL.
 
 use crate::shader_build::compile;
+use crate::skipping::say_skipped;
 use std::path::Path;
 
 /// Writes them instead, as `tools/shaders` does.
@@ -13,8 +14,7 @@ fn compiled_shaders_of_the_hosts_are_current() {
     let write = std::env::var_os(WRITE).is_some();
     // A test of the engine complains where the engine's are another compiler's than Debian's.
     if !write && !digest.contains(&compile::compiler()) {
-        eprintln!("SKIPPED, not passed: {} is not the compiler of the hosts' shaders", compile::compiler());
-        return;
+        return say_skipped(&format!("{} is not the compiler of the hosts' shaders", compile::compiler()));
     }
     let shaders = root.join("tools/hosts/shaders");
     let modules = compile::folder(&shaders).expect("the hosts' shaders");

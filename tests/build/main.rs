@@ -15,3 +15,6 @@ mod build_code_digest;
 #[allow(dead_code)]
 #[path = "../../tools/shader_build/mod.rs"]
 mod shader_build;
+#[allow(dead_code)]
+#[path = "../support/skipping.rs"]
+mod skipping;

@@ -1,7 +1,7 @@
 //! The default picture of points against the truth of their surface, relative to the mesh of the same points: the cameras of
 //! `tests/cameras.json`, lit.
 
-use crate::program::{Program, say_skipped};
+use crate::program::{Program, data};
 use std::path::Path;
 
 /// Most RMSE relative to that of the mesh by 16 rays a pixel, per model; beyond the figures in the guide, Accuracy, by 5 % at most.
@@ -53,9 +53,7 @@ fn check(test: &str, models: &[&str], others: Option<f64>) {
         if !models.contains(&name) {
             continue;
         }
-        let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(points);
-        if !points.starts_with("scene:") && !data.exists() {
-            say_skipped(test, &format!("there is no {}", data.display()));
+        if !points.starts_with("scene:") && data(points).is_none() {
             continue;
         }
         let Some(bar) = others else {

@@ -1,7 +1,10 @@
 //! Runs the program, and writes its input files.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
+#[path = "../support/skipping.rs"]
+mod skipping;
+
+pub use skipping::{data, say_skipped};
+use std::path::PathBuf;
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
@@ -42,7 +45,7 @@ impl Program {
         Self { folder: tempfile::tempdir().unwrap() }
     }
 
-    /// The program, if there is a Vulkan device. Otherwise the test is skipped with a message, or fails if `SURFEL_REQUIRE_GPU` is 1.
+    /// The program, if there is a Vulkan device. Otherwise the test is skipped with a note, or fails if `SURFEL_REQUIRE_GPU` is 1.
     pub fn with_device(test: &str) -> Option<Self> {
         let program = Self::new();
         let devices = program.run("devices");
@@ -50,7 +53,7 @@ impl Program {
             return Some(program);
         }
         assert_ne!(std::env::var("SURFEL_REQUIRE_GPU").as_deref(), Ok("1"), "{test}: {}", devices.err);
-        say_skipped(test, "no Vulkan device");
+        say_skipped("no Vulkan device");
         None
     }
 
@@ -115,17 +118,7 @@ pub fn surfels_with(name: &str, lines: &[&str]) -> String {
     surfels(lines).replace("end_header", &format!("property float {name}\nend_header"))
 }
 
-/// A file of the scans beside the project. Without it the test is skipped with a message.
-pub fn scan(test: &str, name: &str) -> Option<PathBuf> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(name);
-    if path.exists() {
-        return path.canonicalize().ok();
-    }
-    say_skipped(test, &format!("no {}", path.display()));
-    None
-}
-
-/// Prints that a test is skipped, past the test harness, which captures the output of print macros.
-pub fn say_skipped(test: &str, why: &str) {
-    std::io::stderr().write_all(format!("SKIPPED {test}: {why}\n").as_bytes()).unwrap();
+/// The canonical path of [`data`].
+pub fn scan(name: &str) -> Option<PathBuf> {
+    data(name)?.canonicalize().ok()
 }

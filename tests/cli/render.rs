@@ -190,7 +190,7 @@ fn validation_messages_are_errors() {
 fn scans_are_rendered() {
     let Some(program) = Program::with_device("scans_are_rendered") else { return };
     for name in ["classic/bunny16k.ply", "classic/chameleon4k.ply"] {
-        let Some(path) = scan("scans_are_rendered", name) else { return };
+        let Some(path) = scan(name) else { return };
         let run =
             program.run(&format!("render {} -o a.png --size 128x128 --validate --times", path.display()));
         assert!(run.text().is_empty() && run.err.contains(" surfels\n"), "{}", run.err);

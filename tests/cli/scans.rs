@@ -1,7 +1,7 @@
 //! Every file of the scans beside the project.
 
 use crate::matrix::{if_whole, whole_matrix};
-use crate::program::{Program, say_skipped};
+use crate::program::{Program, data};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -34,10 +34,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
 #[test]
 fn every_file_gives_a_picture_or_one_line() {
     let Some(program) = Program::with_device("every_file_gives_a_picture_or_one_line") else { return };
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
-    if !folder.exists() {
-        return say_skipped("every_file_gives_a_picture_or_one_line", "no ../shared/data");
-    }
+    let Some(folder) = data("") else { return };
     let files: Vec<_> = files(&folder).into_iter().step_by(if_whole(1, 3)).collect();
     let results: Vec<_> = files.par_iter().enumerate().map(|(i, path)| render(&program, i, path)).collect();
     let pictures = results.iter().filter(|(is_picture, _)| *is_picture).count();

@@ -6,6 +6,7 @@ use crate::host::frame::{Frame, Kind};
 use crate::host::mesh::Mesh;
 use crate::support::gpu::{Alone, alone};
 use crate::support::sampling::{Random, bumpy_sphere};
+use crate::support::skipping::say_skipped;
 use ash::vk;
 use glam::{DMat4, DVec3, Vec3};
 use std::ops::Deref;
@@ -32,14 +33,14 @@ impl Deref for TestHost {
     }
 }
 
-/// Opens a host; without a device, prints a message and returns `None`. With `SURFEL_REQUIRE_GPU` set, it panics instead.
+/// Opens a host; without a device, notes that the test is skipped and returns `None`. With `SURFEL_REQUIRE_GPU` set, it panics instead.
 pub fn open(wanted: fn(Abilities) -> Abilities) -> Option<TestHost> {
     let alone = alone();
     match Host::open(wanted, true) {
         Ok(host) => Some(TestHost { host, _alone: alone }),
         Err(error) if std::env::var_os("SURFEL_REQUIRE_GPU").is_some() => panic!("{error}"),
         Err(error) => {
-            eprintln!("SKIPPED, not passed: {error}");
+            say_skipped(&error.to_string());
             None
         }
     }

@@ -1,7 +1,7 @@
 //! Normals and radii that are estimated, against surfaces whose own are known.
 
-use crate::support::mesh;
 use crate::support::sampling::Random;
+use crate::support::{mesh, skipping};
 use glam::{DQuat, DVec3, Vec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -62,7 +62,7 @@ fn normals_of_a_noisy_sphere_are_right() {
 #[test]
 fn normals_of_scans_are_those_of_their_meshes() {
     for name in ["stanford/bunny/bun_zipper.ply", "classic/igea.ply", "classic/feline_50k.ply"] {
-        let Some(path) = mesh::data(name) else { return };
+        let Some(path) = skipping::data(name) else { return };
         let mesh = mesh::read(&path);
         let errors = errors(bare(mesh.positions.clone()), &mesh::normals(&mesh));
         println!("{name}: {errors:?}");
@@ -84,7 +84,7 @@ fn range_scan(path: &Path, pose: [f64; 7]) -> Cloud {
 
 #[test]
 fn normals_of_several_scans_are_those_of_the_mesh_that_was_made_of_them() {
-    let Some(path) = mesh::data("stanford/bunny/range/bun.conf") else { return };
+    let Some(path) = skipping::data("stanford/bunny/range/bun.conf") else { return };
     let poses = std::fs::read_to_string(&path).unwrap();
     let scans = poses.lines().filter_map(|line| {
         let (name, pose) = line.strip_prefix("bmesh ")?.split_once(' ')?;
@@ -94,7 +94,7 @@ fn normals_of_several_scans_are_those_of_the_mesh_that_was_made_of_them() {
         Some(range_scan(&file, numbers.try_into().unwrap()))
     });
     let cloud = Cloud::merge(scans.collect(), [0.5; 3]).unwrap();
-    let mesh = mesh::read(&mesh::data("stanford/bunny/bun_zipper.ply").unwrap());
+    let mesh = mesh::read(&skipping::data("stanford/bunny/bun_zipper.ply").unwrap());
     let normals = mesh::normals(&mesh);
     let nearest = |p: &Vec3| {
         let all = mesh.positions.iter().map(|vertex| vertex.distance_squared(*p)).zip(&normals);

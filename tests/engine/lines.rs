@@ -1,17 +1,13 @@
 //! The apple tree of the paper's kind as lines (marroquim2008, section 4.3).
 
-use std::path::Path;
+use crate::support::skipping::data;
 use surfel::estimate::Estimate;
 use surfel::formats::{self, ReadOptions};
 use surfel::geometry::{Colours, Lined, Model, ToLines};
 
 #[test]
 fn an_apple_tree_becomes_ribbons_tubes_and_a_trunk() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/plants/appletree.ply");
-    if !path.exists() {
-        eprintln!("SKIPPED: there is no {}", path.display());
-        return;
-    }
+    let Some(path) = data("plants/appletree.ply") else { return };
     let options = ReadOptions { triangles: true, ..Default::default() };
     let tree = formats::read(&path, &options, &()).unwrap().cloud;
     let (cloud, lined) = tree.to_lines(&ToLines::default()).unwrap();

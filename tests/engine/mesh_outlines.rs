@@ -1,6 +1,6 @@
 //! Outlines of the points of meshes against those of the triangles, from six sides: scans, decimated and stretched ones, shapes of CAD programs.
 
-use crate::support::{gpu, if_whole, mesh};
+use crate::support::{gpu, if_whole, mesh, skipping};
 use glam::{DVec3, Vec3};
 use std::f32::consts::TAU;
 use std::sync::Arc;
@@ -91,7 +91,7 @@ fn meshes_keep_their_outlines() {
     let Some(device) = gpu::device(DeviceLimits::default()) else { return };
     let mut failed = Vec::new();
     for (name, most) in SCANS {
-        let Some(path) = mesh::data(name) else { continue };
+        let Some(path) = skipping::data(name) else { continue };
         let mesh = used(&mesh::read(&path));
         check(&device, name, &mesh, most, &mut failed);
         if name.ends_with("res2.ply") {

@@ -2,6 +2,7 @@
 //!
 //! Its cells: file; `accept` or `reject`; what is understood, as [`summary`] says it, or a part of the error; why that is right.
 
+use crate::support::skipping::data;
 use cpu_time::ThreadTime;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -12,13 +13,9 @@ use surfel::geometry::{Cloud, Colours, View};
 
 const EXPECTATIONS: &str = include_str!("ply_edge.tsv");
 
-/// The shared test data; `None`, and a line that says so, where it is not there.
+/// The files by their names; `None` without the test data.
 fn files() -> Option<BTreeMap<String, PathBuf>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/ply_edge");
-    let Ok(entries) = std::fs::read_dir(&folder) else {
-        eprintln!("SKIPPED: there is no {}", folder.display());
-        return None;
-    };
+    let entries = std::fs::read_dir(data("ply_edge")?).unwrap();
     let paths = entries.map(|entry| entry.unwrap().path());
     let paths = paths.filter(|path| path.extension().is_some_and(|extension| extension == "ply"));
     Some(paths.map(|path| (path.file_name().unwrap().to_string_lossy().into_owned(), path)).collect())

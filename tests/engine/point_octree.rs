@@ -3,7 +3,7 @@
 use crate::levels::{exact_colours, quality};
 use crate::support::gpu::{assert_silent, device};
 use crate::support::if_whole;
-use crate::support::mesh;
+use crate::support::{mesh, skipping};
 use glam::Vec3;
 use std::time::Duration;
 use surfel::bench::papers::models::Models;
@@ -58,7 +58,7 @@ const DRAGON: f64 = 173_507.0;
 
 #[test]
 fn the_dragon_has_as_many_nodes_as_in_the_paper() {
-    let Some(path) = mesh::data("stanford/dragon/dragon_vrip.ply") else { return };
+    let Some(path) = skipping::data("stanford/dragon/dragon_vrip.ply") else { return };
     let positions = mesh::read(&path).positions;
     let (normals, radii) = (vec![Vec3::Z; positions.len()], vec![1e-4; positions.len()]);
     let surfels = Surfels { positions, normals, radii, ..Surfels::default() };
@@ -73,7 +73,7 @@ fn the_dragon_has_as_many_nodes_as_in_the_paper() {
 #[test]
 #[ignore = "takes long: tools/test --all"]
 fn every_number_of_the_dragons_rows_is_measured() {
-    let Some(path) = mesh::data("stanford/dragon/dragon_vrip.ply") else { return };
+    let Some(path) = skipping::data("stanford/dragon/dragon_vrip.ply") else { return };
     let Some(device) = device(DeviceLimits::default()) else { return };
     let models = Models::open(path.parent().unwrap(), &()).unwrap();
     let effort = Effort { warmup: 1, least: 3, most: 3, budget: Duration::ZERO, until: None };

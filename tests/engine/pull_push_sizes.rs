@@ -1,7 +1,7 @@
 //! Pull–push of small pictures, whose discs are smaller than a pixel, against rays through the pixels' centres.
 
 use crate::support::gpu::{assert_silent, device, render};
-use crate::support::{if_whole, mesh};
+use crate::support::{if_whole, skipping};
 use glam::DVec3;
 use std::sync::Arc;
 use surfel::bench::subject::Subject;
@@ -56,7 +56,7 @@ fn small_pictures_are_whole() {
     for (name, bars, most_holes) in &models[..if_whole(3, 1)] {
         let subject = match name.starts_with("scene:") {
             true => Subject::scene(name),
-            false => match mesh::data(name) {
+            false => match skipping::data(name) {
                 Some(path) => Subject::scan(&path, None, &()),
                 None => continue,
             },

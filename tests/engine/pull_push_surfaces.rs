@@ -2,9 +2,9 @@
 //! the exact surface.
 
 use crate::support::gpu::{TestDevice, assert_silent, device};
-use crate::support::mesh;
 use crate::support::pyramids::{FrameCase, Rendered};
 use crate::support::settings::points_alone;
+use crate::support::{mesh, skipping};
 use glam::DVec3;
 use surfel::bench::subject::Subject;
 use surfel::geometry::{Camera, Cloud, Extent, Surfels};
@@ -88,7 +88,7 @@ fn area(mesh: &Cloud) -> f64 {
 #[test]
 #[ignore = "takes long: tools/test --all"]
 fn a_scan_has_no_holes_and_does_not_leak() {
-    let file = |name| mesh::data(&format!("stanford/dragon/{name}"));
+    let file = |name| skipping::data(&format!("stanford/dragon/{name}"));
     let Some((path, exact)) = file("dragon_vrip_res2.ply").zip(file("dragon_vrip.ply")) else { return };
     let device = device(DeviceLimits::default());
     let subject = Subject::scan(&path, Some(&exact), &()).unwrap();

@@ -1,7 +1,7 @@
 //! Real scans, from file to picture, against their meshes.
 
 use crate::support::settings::splats_alone;
-use crate::support::{gpu, if_whole, mesh};
+use crate::support::{gpu, if_whole, mesh, skipping};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 use surfel::estimate::Estimate;
@@ -43,7 +43,7 @@ fn scans_have_their_meshes_outlines_and_no_holes() {
     let Some(device) = gpu::device(DeviceLimits::default()) else { return };
     let names = ["stanford/bunny/bun_zipper.ply", "classic/igea.ply", "stanford/dragon/dragon_vrip.ply"];
     for name in &names[..if_whole(names.len(), 1)] {
-        let Some(path) = mesh::data(name) else { return };
+        let Some(path) = skipping::data(name) else { return };
         let mesh = mesh::read(&path);
         let bare = Cloud { positions: mesh.positions.clone(), origin: mesh.origin, ..Default::default() };
         for (from, cloud) in [("faces", mesh.clone()), ("neighbours", bare)] {
@@ -67,7 +67,7 @@ fn scans_have_their_meshes_outlines_and_no_holes() {
 #[ignore = "takes long: tools/test --all"]
 fn radii_are_within_half_again_of_the_least_without_holes() {
     let Some(device) = gpu::device(DeviceLimits::default()) else { return };
-    let Some(path) = mesh::data("stanford/bunny/bun_zipper.ply") else { return };
+    let Some(path) = skipping::data("stanford/bunny/bun_zipper.ply") else { return };
     let mesh = mesh::read(&path);
     let bare = Cloud { positions: mesh.positions.clone(), ..Default::default() };
     for (from, cloud) in [("faces", mesh.clone()), ("neighbours", bare)] {
@@ -94,7 +94,7 @@ fn radii_are_within_half_again_of_the_least_without_holes() {
 #[ignore = "takes long: tools/test --all"]
 fn a_scan_far_away_is_the_same_picture() {
     let Some(device) = gpu::device(DeviceLimits::default()) else { return };
-    let Some(path) = mesh::data("stanford/dragon/dragon_vrip.ply") else { return };
+    let Some(path) = skipping::data("stanford/dragon/dragon_vrip.ply") else { return };
     let offset = DVec3::new(500_000.0, 4_600_000.0, 100.0);
     let file = std::fs::read(&path).unwrap();
     let near = formats::read_bytes("near", &file, &ReadOptions::default()).unwrap().cloud;

@@ -1,6 +1,6 @@
 //! Specks of the default picture: pixels whose normal is another surface's, and pixels brighter than all around them.
 
-use crate::support::{gpu, if_whole, mesh};
+use crate::support::{gpu, if_whole, skipping};
 use glam::{DVec3, Vec3};
 use std::path::Path;
 use std::sync::Arc;
@@ -103,7 +103,9 @@ fn closed_scans_have_no_specks() {
     ];
     let mut failed = Vec::new();
     for (name, points, surface, most) in &models[..if_whole(models.len(), 1)] {
-        let [Some(points), Some(surface)] = [points, surface].map(|path| mesh::data(path)) else { continue };
+        let [Some(points), Some(surface)] = [points, surface].map(|path| skipping::data(path)) else {
+            continue;
+        };
         let subject = Subject::scan(&points, Some(&surface), &()).unwrap();
         let found = check(&device, &points, &subject, &first_camera(name, &subject));
         println!("{name}: {found:?}");
@@ -122,7 +124,7 @@ fn open_scans_have_no_specks_from_either_side() {
     let names = ["bun000", "bun045", "bun090", "bun180", "bun270", "bun315", "chin", "top2"];
     let mut failed = Vec::new();
     for name in &names {
-        let Some(path) = mesh::data(&format!("stanford/bunny/range/{name}.ply")) else { continue };
+        let Some(path) = skipping::data(&format!("stanford/bunny/range/{name}.ply")) else { continue };
         let subject = Subject::scan(&path, None, &()).unwrap();
         let extent = Extent::from(&subject.bounds());
         // The scanner looked along −z.

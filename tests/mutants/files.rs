@@ -1,5 +1,6 @@
 //! Small files to be damaged: some that between them have everything which the reader understands, and those of other programs.
 
+use crate::skipping::data;
 use std::path::Path;
 
 /// Largest file that is damaged, bytes.
@@ -72,11 +73,8 @@ pub fn own() -> Vec<Vec<u8>> {
 /// The test's own files, several times, and other programs' where they are at hand.
 pub fn all() -> Vec<Vec<u8>> {
     let mut files: Vec<_> = std::iter::repeat_n(own(), 4).flatten().collect();
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/ply_edge");
-    let Ok(entries) = std::fs::read_dir(&folder) else {
-        eprintln!("SKIPPED: there is no {}", folder.display());
-        return files;
-    };
+    let Some(folder) = data("ply_edge") else { return files };
+    let entries = std::fs::read_dir(folder).unwrap();
     let small = |path: &Path| (1..=LARGEST).contains(&path.metadata().map_or(0, |about| about.len()));
     let mut paths: Vec<_> = entries.map(|entry| entry.unwrap().path()).filter(|path| small(path)).collect();
     // The seed alone must say what a mutant is.

@@ -8,6 +8,8 @@ mod made;
 #[path = "../support/matrix.rs"]
 mod matrix;
 mod mutate;
+#[path = "../support/skipping.rs"]
+mod skipping;
 
 use cap::Cap;
 use matrix::if_whole;

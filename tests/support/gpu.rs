@@ -1,5 +1,6 @@
 //! A device under validation, for tests that need one.
 
+use super::skipping::say_skipped;
 use std::cell::RefCell;
 use std::ops::Deref;
 use std::rc::{Rc, Weak};
@@ -23,8 +24,8 @@ impl Deref for TestDevice {
     }
 }
 
-/// A device under validation, less what `limits` hide; `None`, said aloud, where there is none. With `SURFEL_REQUIRE_GPU` set, the lack of one
-/// is a failure. Without limits all tests share one device with the pipelines that they make, and its validation messages.
+/// A device under validation, less what `limits` hide. Without one the test is skipped with a note, or fails if `SURFEL_REQUIRE_GPU` is set.
+/// Without limits all tests share one device with the pipelines that they make, and its validation messages.
 pub fn device(limits: DeviceLimits) -> Option<TestDevice> {
     if limits == DeviceLimits::default() {
         shared().map(|device| TestDevice { device, _alone: None })
@@ -49,7 +50,7 @@ fn open(limits: DeviceLimits) -> Option<Arc<Device>> {
         Ok(device) => Some(device),
         Err(error) if std::env::var_os("SURFEL_REQUIRE_GPU").is_some() => panic!("{error}"),
         Err(error) => {
-            eprintln!("SKIPPED, not passed: {error}");
+            say_skipped(&error.to_string());
             None
         }
     }

@@ -1,19 +1,9 @@
 //! Triangle meshes as truth: their normals, and which pixels they cover.
 
 use glam::{DVec2, DVec3, Vec3};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use surfel::formats;
 use surfel::geometry::{Camera, Cloud};
-
-/// A file of the shared test data; `None`, said aloud, where there is none.
-pub fn data(name: &str) -> Option<PathBuf> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(name);
-    if path.exists() {
-        return Some(path);
-    }
-    eprintln!("SKIPPED, not passed: there is no {}", path.display());
-    None
-}
 
 /// The points and triangles of a file.
 pub fn read(path: &Path) -> Cloud {

@@ -12,6 +12,7 @@ pub mod results;
 pub mod sampling;
 pub mod scenes;
 pub mod settings;
+pub mod skipping;
 pub mod texture;
 pub mod truth;
 

@@ -35,7 +35,7 @@ pub mod key {
 }
 
 impl Display {
-    /// Starts a display. Without Xvfb the test is skipped with a message, or fails if `SURFEL_REQUIRE_GPU` is set.
+    /// Starts a display. Without Xvfb the test is skipped with a note, or fails if `SURFEL_REQUIRE_GPU` is set.
     pub fn new(test: &str) -> Option<Self> {
         let arguments = ["-displayfd", "1", "-screen", "0", SCREEN, "-nolisten", "tcp", "-noreset"];
         let started = Command::new("Xvfb")
@@ -48,7 +48,7 @@ impl Display {
             Ok(server) => server,
             Err(error) => {
                 assert!(std::env::var_os("SURFEL_REQUIRE_GPU").is_none(), "{test}: Xvfb: {error}");
-                say_skipped(test, &format!("Xvfb: {error}"));
+                say_skipped(&format!("Xvfb: {error}"));
                 return None;
             }
         };

@@ -1,6 +1,6 @@
 //! Previews, adaptive resolution and reloading of `surfel view`.
 
-use crate::program::SHADER_CACHE;
+use crate::program::{SHADER_CACHE, say_skipped};
 use serde_json::Value;
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
@@ -18,13 +18,13 @@ struct View {
 }
 
 impl View {
-    /// Opens the window. Without Xvfb or xdotool the test is skipped with a message.
+    /// Opens the window. Without Xvfb or xdotool the test is skipped with a note.
     fn open(test: &str, arguments: &[&str]) -> Option<Self> {
         for program in ["Xvfb", "xdotool"] {
             let found = Command::new("which").arg(program).stdout(Stdio::null()).status();
             if !found.is_ok_and(|status| status.success()) {
                 assert!(std::env::var_os("SURFEL_REQUIRE_GPU").is_none(), "{test}: there is no {program}");
-                eprintln!("{test}: skipped: there is no {program}");
+                say_skipped(&format!("there is no {program}"));
                 return None;
             }
         }

@@ -18,7 +18,7 @@ fn a_session_with_a_scene() {
 #[ignore = "takes long: tools/test --all"]
 fn a_session_with_the_bunny() {
     let test = "a_session_with_the_bunny";
-    if let Some(bunny) = scan(test, "stanford/bunny/bun_zipper.ply") {
+    if let Some(bunny) = scan("stanford/bunny/bun_zipper.ply") {
         session(test, bunny.to_str().unwrap());
     }
 }

@@ -82,7 +82,7 @@ fn plain(text: &str) -> String {
 fn quotations_are_verbatim() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/papers");
     let Ok(entries) = std::fs::read_dir(&folder) else {
-        return eprintln!("skipped: {} is not there", folder.display());
+        return crate::skipping::say_skipped(&format!("there is no {}", folder.display()));
     };
     let paths: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
     for paper in Paper::VARIANTS {

@@ -2,17 +2,7 @@
 
 use super::*;
 use crate::geometry::View;
-use std::path::PathBuf;
-
-/// The shared test data; `None`, and a line that says so, where it is not there.
-fn data(part: &str) -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(part);
-    if !folder.exists() {
-        eprintln!("SKIPPED: there is no {}", folder.display());
-        return None;
-    }
-    Some(folder)
-}
+use crate::skipping::data;
 
 fn open(path: &Path) -> Loaded {
     read(path, &ReadOptions::default(), &()).unwrap_or_else(|error| panic!("{error}"))
