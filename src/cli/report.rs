@@ -69,6 +69,7 @@ impl Report {
         put("size", json!(task.size));
         put("frames", json!(task.frames));
         put("settings", settings(&task.settings));
+        put("quantized", json!(args.backend.quantize));
         put("hierarchy", json!(args.render_settings.hierarchy.name()));
         put("octree", json!(task.cut.map(|cut| cut.report(&task.camera)).transpose()?));
         put("camera", camera(task));
@@ -142,7 +143,8 @@ fn settings(settings: &Settings) -> Value {
     let Splatting { footprint, kernel, filter, visibility, normalization, shade } = splatting;
     if let Some(pull_push) = pull_push {
         return json!({
-            "rules": pull_push.rules.name(), "lod": lod, "max_points": max_points, "cull": cull.name(), "shading": shading.name(), "edl": edl, "ao": ao, "background": background,
+            "rules": pull_push.rules.name(), "pixel_filter": pixel_filter, "lod": lod, "max_points": max_points, "cull": cull.name(),
+            "alpha": alpha.name(), "shading": shading.name(), "edl": edl, "ao": ao, "background": background,
             "lighting": light(lighting),
         });
     }

@@ -86,6 +86,13 @@ fn a_file_is_described_in_json() {
     assert_eq!(info["radius"], serde_json::json!({ "min": 1.0, "max": 3.0, "median": 2.0 }));
     assert_eq!(info["estimated"]["normals"]["given"], 3);
     assert_eq!(info["left_out"]["without_position"], 1);
+    let rows: Vec<_> = (0..36).map(|i| format!("{} {} 0 0 0 1 1", i % 6, i / 6)).collect();
+    program.write("c.ply", surfels(&rows.iter().map(String::as_str).collect::<Vec<_>>()));
+    for (source, given) in [("file", 36), ("estimate", 0)] {
+        let info = json(&program, &format!("info c.ply --json --estimate --normals {source}"));
+        let normals = &info["estimated"]["normals"];
+        assert_eq!([&normals["given"], &normals["from_neighbours"]], [given, 36 - given], "{source}");
+    }
     let scene = json(&program, "info scene:torus?points=500 --json --estimate");
     assert_eq!((&scene["surfels"], &scene["elements"]), (&500.into(), &Value::Null));
 

@@ -1,7 +1,7 @@
 //! `--json` and `--times`.
 
 use crate::program::{Program, surfels};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// Surfels of every cull reason: drawn, behind, eye plane, back, outside; and a point without a position.
 const REASONS: [&str; 6] = [
@@ -24,9 +24,9 @@ fn check_counts(counts: &Value) {
     assert_eq!(counts["drawn"], 1, "{counts}");
     assert_eq!(
         counts["dropped"],
-        serde_json::json!({ "position": 1, "transparent": 0, "thinned": 0, "filtered": 0, "unused": 0, "outlier": 0 })
+        json!({ "position": 1, "transparent": 0, "thinned": 0, "filtered": 0, "unused": 0, "outlier": 0 })
     );
-    let culled = serde_json::json!({ "behind": 1, "eye_plane": 1, "back": 1, "outside": 1, "invalid": 0, "other_level": 0, "hidden": 0 });
+    let culled = json!({ "behind": 1, "eye_plane": 1, "back": 1, "outside": 1, "invalid": 0, "other_level": 0, "hidden": 0 });
     assert_eq!(counts["culled"], culled);
 }
 
@@ -46,16 +46,13 @@ fn the_report_has_everything_and_adds_up() {
     for key in ["name", "kind", "driver", "api_version"] {
         assert!(report["device"][key].as_str().is_some_and(|text| !text.is_empty()), "{key}: {report}");
     }
-    assert_eq!(
-        (&report["size"], &report["method"]),
-        (&serde_json::json!([64, 64]), &"perspective-ewa".into())
-    );
+    assert_eq!((&report["size"], &report["method"]), (&json!([64, 64]), &"perspective-ewa".into()));
     assert_eq!((&report["frames"], &report["precision"]), (&3.into(), &"full".into()));
     assert_eq!(report["settings"]["cull"], "back");
     assert_eq!(report["settings"]["widen"], "small");
     assert_eq!(report["settings"]["alpha"], "coverage");
-    assert_eq!(report["camera"]["view"][3], serde_json::json!([0.0, 0.0, 5.0, 1.0]));
-    assert_eq!(report["validation_messages"], serde_json::json!([]));
+    assert_eq!(report["camera"]["view"][3], json!([0.0, 0.0, 5.0, 1.0]));
+    assert_eq!(report["validation_messages"], json!([]));
     let targets = report["targets"].as_array().unwrap();
     let bytes: u64 = targets.iter().map(|target| target["bytes"].as_u64().unwrap()).sum();
     assert_eq!(report["target_bytes"].as_u64(), Some(bytes));
@@ -88,6 +85,57 @@ fn the_reference_reports_the_same_counts_and_no_device() {
     assert!(report["device"].is_null() && report["targets"].is_null());
 }
 
+/// Every option reaches the settings, and the report has all of them.
+#[test]
+fn the_report_has_the_settings_as_given() {
+    let program = Program::new();
+    let render = |options: &str| -> Value {
+        let what = "render scene:sphere?points=200 -o a.png --size 16x16 --reference --quiet --json -";
+        serde_json::from_str(program.run(&format!("{what} {options}")).text()).unwrap()
+    };
+    let lighting = json!({
+        "albedo": vec![0.6f32; 3], "ambient": 0.08f32, "headlight": 0.87f32, "specular": 0.06f32, "shininess": 40.0, "directional": [],
+    });
+    let picture = "--lod 0.25 --max-points 1000 --cull none --edl 3 --ao=0.5 --background 255,0,0";
+    let report = render(&format!(
+        "--footprint disc --filter object --visibility axis --normalization none --shade splat --cutoff 1.5 --lowpass 2 \
+         --pixel-filter gaussian:0.5 --widen all --epsilon 1.25 --alpha mask --edges nearest {picture}"
+    ));
+    let expected = json!({
+        "footprint": "disc", "kernel": "gaussian", "filter": "object", "visibility": "axis", "normalization": "none", "shade": "splat",
+        "cutoff": 1.5, "lowpass": 2.0, "pixel_filter": 0.5, "widen": "all", "point_size": 2.0, "lod": 0.25, "max_points": 1000,
+        "epsilon": 1.25, "cull": "none", "alpha": "mask", "edges": "nearest", "shading": "edl", "edl": 3.0, "ao": 0.5,
+        "background": [1.0, 0.0, 0.0], "lighting": lighting,
+    });
+    assert_eq!(report["settings"], expected);
+    assert_eq!([&report["version"], &report["output"]], [env!("CARGO_PKG_VERSION"), "a.png"]);
+    assert_eq!(report["inputs"], json!(["scene:sphere?points=200"]));
+    assert_eq!([&report["reference"], &report["quantized"]], [true, false]);
+
+    let settings =
+        &render("--footprint affine --filter none --kernel confetti:4,5 --shade pixel")["settings"];
+    let axes = ["footprint", "filter", "kernel", "shade", "visibility", "normalization"];
+    let found = axes.map(|axis| &settings[axis]);
+    assert_eq!(found, ["affine", "none", "confetti:4,5", "pixel", "ray", "pixel"]);
+
+    let pull_push = |options: &str| {
+        let report = render(&format!("--method pull-push {options}"));
+        (report["settings"].clone(), program.png("a.png"))
+    };
+    let (settings, _) = pull_push(&format!("--alpha coverage --pixel-filter gaussian:0.5 {picture}"));
+    let expected = json!({
+        "rules": "robust", "pixel_filter": 0.5, "lod": 0.25, "max_points": 1000, "cull": "none", "alpha": "coverage",
+        "shading": "edl", "edl": 3.0, "ao": 0.5, "background": [1.0, 0.0, 0.0], "lighting": lighting,
+    });
+    assert_eq!(settings, expected);
+    // Both change its picture.
+    let (settings, plain) = pull_push("");
+    assert_eq!([&settings["alpha"], &settings["pixel_filter"]], [&json!("mask"), &json!(0.0)]);
+    for change in ["--alpha coverage", "--pixel-filter gaussian:0.5"] {
+        assert!(pull_push(change).1 != plain, "{change}");
+    }
+}
+
 #[test]
 fn points_are_counted_by_every_rasterizer() {
     let Some(program) = Program::with_device("points_are_counted_by_every_rasterizer") else {
@@ -100,7 +148,7 @@ fn points_are_counted_by_every_rasterizer() {
         let report: Value = serde_json::from_str(run.text()).unwrap();
         let counts = &report["counts"];
         // A point does not reach the eye plane; this disc is edge-on.
-        let culled = serde_json::json!({ "behind": 1, "eye_plane": 0, "back": 2, "outside": 1, "invalid": 0, "other_level": 0, "hidden": 0 });
+        let culled = json!({ "behind": 1, "eye_plane": 0, "back": 2, "outside": 1, "invalid": 0, "other_level": 0, "hidden": 0 });
         assert_eq!((&counts["culled"], &counts["drawn"]), (&culled, &1.into()), "{way}");
         let rasterizer = way.split(' ').nth(2).map_or(Value::Null, Value::from);
         assert_eq!(report["rasterizer"], rasterizer, "{way}");
@@ -149,8 +197,7 @@ fn the_faster_rasterizer_is_preferred() {
         [rasterizer, reason]
     };
     assert_eq!(found(""), ["compute", "default"]);
-    let interval =
-        |low: f64, high: f64| serde_json::json!({ &key: { "median": low, "low": low, "high": high } });
+    let interval = |low: f64, high: f64| json!({ &key: { "median": low, "low": low, "high": high } });
     program.write(".cache/surfel/rasterizers.json", interval(0.5, 0.9).to_string());
     assert_eq!(found(""), ["draw", "faster"]);
     assert_eq!(found("--rasterizer compute"), ["compute", "required"]);
@@ -237,8 +284,8 @@ fn without_timestamps_only_the_frame_is_timed() {
 }
 
 #[test]
-fn half_precision_is_reported_and_takes_less_memory() {
-    let Some(program) = Program::with_device("half_precision_is_reported_and_takes_less_memory") else {
+fn half_precision_and_quantization_take_less_memory() {
+    let Some(program) = Program::with_device("half_precision_and_quantization_take_less_memory") else {
         return;
     };
     let bytes = |flag: &str, precision: &str| {
@@ -246,10 +293,15 @@ fn half_precision_is_reported_and_takes_less_memory() {
             "render scene:bumpy-sphere?points=1000 -o a.png --validate --json - --rasterizer draw {flag}"
         ));
         let report: Value = serde_json::from_str(run.text()).unwrap();
-        assert_eq!(report["precision"], precision);
-        report["target_bytes"].as_u64().unwrap()
+        assert_eq!(
+            (&report["precision"], &report["quantized"]),
+            (&precision.into(), &(!flag.is_empty()).into())
+        );
+        ["target_bytes", "scene_bytes"].map(|key| report[key].as_u64().unwrap())
     };
-    assert!(bytes("--half", "half") < bytes("", "full"));
+    let (less, more) = (bytes("--half --quantize", "half"), bytes("", "full"));
+    // 12 bytes a surfel and its colour instead of 28.
+    assert!(less[0] < more[0] && 1.5 * (less[1] as f64) < more[1] as f64, "{less:?} {more:?}");
 }
 
 #[test]
