@@ -165,6 +165,23 @@ fn coarser_levels_than_the_largest_disc_change_nothing() {
     }
 }
 
+/// The same of discs of five pixels, in a small picture.
+#[test]
+fn large_discs_reach_what_was_measured() {
+    let truth = Truth::new(128);
+    let exact = truth.coverage();
+    let of = |rules| {
+        let make = |case: &FrameCase| case.by_reference();
+        faults_of(&truth, &exact, 2_000, (rules, Precision::Full), &make)
+    };
+    let [paper, robust] = [Rules::Paper, Rules::Robust].map(of);
+    // Holes, missing, extra, wrong %, normal °.
+    let bars = [0.0, 0.0, 430.0, 22.7, 2.2];
+    let within = robust.figures().iter().zip(bars).all(|(found, bar)| *found <= bar);
+    assert!(within && robust.leaks <= 52, "{robust:?}");
+    assert!(paper.normal > robust.normal && paper.coverage > robust.coverage, "{paper:?} {robust:?}");
+}
+
 #[test]
 #[ignore = "takes long: tools/test --all"]
 fn the_reference_reaches_what_was_measured() {

@@ -58,6 +58,20 @@ fn every_surfel_is_the_mean_of_the_points_in_its_cell() {
             let Some(Colours::Srgb8(merged)) = &levels.surfels.colours else { panic!("no colours") };
             let exact = mean(&light).to_array().map(|c| srgb::encode8(c as f32));
             assert_eq!(merged[i][..3], exact[..]);
+            // A disc of uniform density has variances of a quarter of its squared radius, one and a half of which are the surfel's.
+            let variance = |i: usize| {
+                let offset = points.positions[i].as_dvec3() - position.as_dvec3();
+                let lean = points.normals[i].dot(normal);
+                offset.reject_from(normal.as_dvec3()).length_squared()
+                    + 0.25 * area(i) * (1.0 + f64::from(lean * lean))
+            };
+            let variances = own.iter().map(|&i| area(i) * variance(i)).sum::<f64>() / total;
+            let radius = 1.5 * (2.0 * variances).sqrt();
+            assert!(
+                (f64::from(levels.surfels.radii[i]) / radius - 1.0).abs() < 1e-4,
+                "{} {radius}",
+                levels.surfels.radii[i]
+            );
         }
         assert!(2 * tested >= count || count < 2 * FEW, "level {}: {tested} of {count}", number + 1);
         // Every point is in the cell of a surfel.

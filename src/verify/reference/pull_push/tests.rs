@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::geometry::{Model, Primitives, Surfels};
-use crate::settings::{Cull, Shading};
+use crate::settings::{Alpha, Cull, Shading};
 use glam::DVec3;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -193,6 +193,40 @@ fn points_on_all_sides_of_a_centre_cover_it() {
 fn the_four_nearest_are_on_a_pixels_own_side() {
     assert_eq!(push::nearest_four([4, 7]), [[2, 3], [1, 3], [2, 4], [1, 4]]);
     assert_eq!(push::nearest_four([0, 0]), [[0, 0], [-1, 0], [0, -1], [-1, -1]]);
+}
+
+/// α by coverage is the part of each shown pixel inside a disc, widened by a variance of 1/16 px². Pixels are shown whose centre is inside a disc
+/// that is widened by 1/4 px².
+#[test]
+fn coverage_is_the_area_of_small_discs() {
+    let radius: f64 = 2.0;
+    // Apart from each other, each elsewhere in its pixel.
+    let place = |i: u32| {
+        let [column, row] = [i % 4, i / 4].map(|k| f64::from(16 * k) + 8.0);
+        DVec2::new(column + f64::from(5 * i % 16) / 16.0, row + f64::from(11 * i % 16) / 16.0)
+    };
+    let places = (0..16).map(|i| ((place(i) - 32.0) / 64.0).extend(1.0));
+    let list: Vec<_> = places.map(|place| (place, DVec3::NEG_Z, (radius / 64.0) as f32)).collect();
+    let settings = Settings { alpha: Alpha::Coverage, pixel_filter: 0.0, ..Default::default() };
+    let pull_push = PullPush::of(Rules::Robust);
+    let frame = render(&discs(&list), &camera(), [64, 64], &settings, pull_push, &()).unwrap();
+    let found = frame.colour.iter().map(|colour| colour[3]).sum::<f64>();
+    // By 32 × 32 points per pixel.
+    let part = |corner: DVec2, disc: DVec2| {
+        let point = |k: u32| DVec2::new(f64::from(k % 32) + 0.5, f64::from(k / 32) + 0.5) / 32.0;
+        let inside = |k: &u32| (corner + point(*k)).distance_squared(disc) <= radius * radius + 1.0 / 16.0;
+        f64::from((0..1024).filter(inside).count() as u32) / 1024.0
+    };
+    let expected: f64 = (0..16)
+        .map(|i| {
+            let corner = |k: u32| place(i).floor() + DVec2::new(f64::from(k % 9), f64::from(k / 9)) - 4.0;
+            let is_shown =
+                |corner: &DVec2| (*corner + 0.5).distance_squared(place(i)) <= radius * radius + 0.25;
+            (0..81).map(corner).filter(is_shown).map(|corner| part(corner, place(i))).sum::<f64>()
+        })
+        .sum();
+    println!("{found} {expected}");
+    assert!((found / expected - 1.0).abs() < 0.003, "{found} {expected}");
 }
 
 /// Vertices at eye-space positions with directions and radii; the camera is at the origin.

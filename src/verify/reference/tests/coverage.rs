@@ -37,6 +37,35 @@ fn coverage_is_the_area_of_the_discs_within_what_leaves_no_holes() {
     assert!((errors.iter().sum::<f64>() / boundary).abs() < 0.02);
 }
 
+/// A convex surface has turned away below a quarter of its radius of curvature times the cosine of the angle at which it is seen.
+#[test]
+fn a_disc_of_a_convex_surface_ends_where_the_surface_turns_away() {
+    let (radius, tilt) = (20.0, 60f64.to_radians());
+    let normal = DVec3::new(tilt.sin(), 0.0, -tilt.cos());
+    // Covered px of a row beyond the centre, where the disc recedes, and before it: means of the rows around the centre.
+    let sides = |bend: f64| {
+        let operator = DMat2::from_diagonal(DVec2::splat(16.0 * bend / radius));
+        let curvatures = Some(vec![Curvature::of_shape_operator(operator)]);
+        let surfels = Surfels { curvatures, ..scene(&[disc(at(32.0, 32.0), normal, radius / 16.0)]) };
+        let colour = render(&surfels, &parallel(), SIZE, &coverage(), &()).unwrap().colour;
+        let rows = |side: usize| {
+            let row =
+                |y: usize| colour[64 * y + 32 * side..][..32].iter().map(|colour| colour[3]).sum::<f64>();
+            (24..40).map(row).sum::<f64>() / 16.0
+        };
+        [rows(1), rows(0)]
+    };
+    let [flat, concave] = [sides(0.0), sides(-0.3)];
+    assert_eq!(flat, concave);
+    assert!((flat[0] / flat[1] - 1.0).abs() < 0.02, "{flat:?}");
+    for bend in [0.3, 0.4] {
+        let [beyond, before] = sides(bend);
+        let depth = 0.25 * tilt.cos() * radius / bend;
+        assert!((beyond - depth / tilt.tan()).abs() < 0.1, "{bend}: {beyond} {}", depth / tilt.tan());
+        assert_eq!(before, flat[1]);
+    }
+}
+
 #[test]
 fn neighbours_cover_together_and_hidden_ones_too() {
     let pair = [at(25.5, 31.5), at(37.5, 31.5)].map(|at| disc(at, DVec3::NEG_Z, 6.3 / 0.77 / 16.0));

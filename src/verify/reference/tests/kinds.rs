@@ -118,6 +118,19 @@ fn a_sprite_is_the_unit_sphere_cut_by_its_plane() {
     });
 }
 
+/// §4 of the same paper: "rounding the resulting size to an integer value".
+#[test]
+fn a_whole_sprite_has_the_nearest_whole_width() {
+    let whole = Splatting { footprint: Footprint::WholeSprite, filter: Filter::None, ..Splatting::default() };
+    for (width, expected) in [(0.2, 1.0), (1.4, 1.0), (1.6, 2.0), (3.4, 3.0), (3.6, 4.0)] {
+        let surfel = disc(2.0 * DVec3::Z, DVec3::NEG_Z, 0.5 * width / 16.0);
+        let splat = footprint(&surfel, &parallel(), SIZE, &splatted(whole)).unwrap().unwrap();
+        // The radius is two standard deviations.
+        let found = 4.0 * splat.variance.x_axis.x.sqrt();
+        assert!(close(found, expected, 1e-9), "{width}: {found}");
+    }
+}
+
 #[test]
 fn a_confetti_kernel_has_the_published_values() {
     let [a, n] = [6.0, 3.0];
