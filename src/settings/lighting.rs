@@ -72,6 +72,14 @@ impl Default for Lighting {
 mod tests {
     use super::*;
 
+    /// Every lit picture and every stored measurement depends on these.
+    #[test]
+    fn the_default_light_and_material() {
+        let Lighting { albedo, ambient, headlight, specular, shininess, directional } = Lighting::default();
+        assert_eq!((albedo, ambient, headlight), ([0.6; 3], 0.08, 0.87));
+        assert_eq!((specular, shininess, directional), (0.06, 40.0, Vec::new()));
+    }
+
     #[test]
     fn lights_are_few_finite_and_have_highlights_with_a_size() {
         let refusal = |change: fn(&mut Lighting)| {

@@ -127,6 +127,30 @@ mod tests {
         assert!(papers.clone().all(|method| method.name.ends_with("-paper")));
     }
 
+    /// The numbers of our presets: a change of one changes every picture and makes stored measurements incomparable.
+    #[test]
+    fn our_presets_have_these_numbers() {
+        let confetti = Kernel::Confetti { a: 6.0, n: 3.0 };
+        let [all, small] = [Widen::All, Widen::Small];
+        let expected = [
+            ("perspective-ewa", 3.5, 1.0, 0.75, small, Kernel::Gaussian),
+            ("object-ewa", std::f32::consts::SQRT_2, 1.0, 0.75, all, Kernel::Gaussian),
+            ("sprites", 2.0, 0.0, 0.75, all, Kernel::Gaussian),
+            ("sprites-unfiltered", 2.0, 0.0, 0.0, all, Kernel::Gaussian),
+            ("confetti", 2.0, 0.0, 0.75, all, confetti),
+            ("pull-push", 3.5, 1.0, 0.0, small, Kernel::Gaussian),
+        ];
+        let numbers = |m: Method| (m.name, m.cutoff, m.lowpass, m.pixel_filter, m.widen, m.splatting.kernel);
+        assert_eq!(Method::OWN.map(numbers), expected);
+        for method in Method::CHOICES {
+            let Settings { epsilon, edl, ao, point_size, lod, max_points, .. } = method.settings();
+            let common = ([epsilon, edl, ao, point_size, lod], max_points);
+            assert_eq!(common, ([1.0, 0.25, 0.0, 2.0, 0.0], None), "{}", method.name);
+        }
+        let where_none_is_given = [Settings::DEFAULT_AO, Settings::DEFAULT_PIXEL_FILTER];
+        assert_eq!(where_none_is_given, [1.0, 0.75]);
+    }
+
     /// The values that the papers state, with their sections in the presets' files.
     #[test]
     fn presets_as_published_have_the_published_values() {
