@@ -181,6 +181,12 @@ fn subject(args: &Bench, input: &OsString, progress: &dyn Progress) -> Result<Rc
 /// The scans of `--scans` that the suites measure, by name.
 fn scans(args: &Bench, suites: &[Suite], progress: &dyn Progress) -> Result<Vec<Rc<Subject>>> {
     let Some(folder) = &args.scans else { return Ok(Vec::new()) };
+    let paths = scan_files(folder, suites)?;
+    paths.iter().map(|path| Ok(Rc::new(Subject::scan(path, None, progress)?))).collect()
+}
+
+/// The files of a folder that the suites measure, by name.
+fn scan_files(folder: &Path, suites: &[Suite]) -> Result<Vec<PathBuf>> {
     let most = match suites {
         _ if suites.contains(&Suite::Full) => usize::MAX,
         _ if suites.contains(&Suite::Quick) => 1,
@@ -197,7 +203,8 @@ fn scans(args: &Bench, suites: &[Suite], progress: &dyn Progress) -> Result<Vec<
     if paths.is_empty() {
         return Err(Error::input(folder.display().to_string(), "no scans: name a folder with PLY files"));
     }
-    paths.iter().take(most).map(|path| Ok(Rc::new(Subject::scan(path, None, progress)?))).collect()
+    paths.truncate(most);
+    Ok(paths)
 }
 
 /// The command that repeats the measurement, without its outputs.
@@ -344,4 +351,36 @@ fn check_outputs(args: &Bench) -> Result<()> {
     }
     std::fs::create_dir_all(folder).map_err(Error::io(folder, "cannot create the folder"))?;
     atomic::check(&folder.join("index.html"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn suites_measure_the_first_scan_or_all() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["b.ply", "a.LAZ", "notes.txt.bak", "c.obj"] {
+            std::fs::write(folder.path().join(name), "").unwrap();
+        }
+        let names = |suites: &[Suite]| {
+            let paths = scan_files(folder.path(), suites)?;
+            Ok(paths.iter().map(|path| path.file_name().unwrap().to_string_lossy().into()).collect())
+        };
+        let text =
+            |found: Result<Vec<String>>| found.map_or_else(|error| error.to_string(), |all| all.join(" "));
+        assert_eq!(text(names(&[Suite::Full])), "a.LAZ b.ply c.obj");
+        assert_eq!(text(names(&[Suite::Quick])), "a.LAZ");
+        assert_eq!(text(names(&[Suite::Quick, Suite::Full])), "a.LAZ b.ply c.obj");
+        assert!(text(names(&[Suite::Scaling])).contains("no suite measures them"));
+        let empty = tempfile::tempdir().unwrap();
+        assert!(text(scan_files(empty.path(), &[Suite::Quick]).map(|_| Vec::new())).contains("no scans"));
+    }
+
+    #[test]
+    fn hard_cases_have_a_file_beside() {
+        for (file, hard) in [("a/b.csv", "a/b-hard.csv"), ("b", "b-hard"), ("a.b/c", "a.b/c-hard")] {
+            assert_eq!(hard_file(Path::new(file)), hard);
+        }
+    }
 }

@@ -150,6 +150,15 @@ mod tests {
         assert_eq!(all.choice(None, &device("a 3")), RasterizerChoice::Automatic);
         let required = RasterizerChoice::Require(Rasterizer::Compute);
         assert_eq!(all.choice(Some(Rasterizer::Compute), &device("a 1")), required);
+        #[cfg(feature = "serde")]
+        {
+            let ratio = serde_json::json!({ "low": 0.5, "median": 1.0, "high": 1.5 });
+            let mut one = FasterRasterizers::default();
+            one.insert(&device("a 2"), interval(0.5, 1.5));
+            assert_eq!(serde_json::to_value(&one).unwrap(), serde_json::json!({ "GPU | a 2": ratio }));
+            let text = serde_json::to_string(&all).unwrap();
+            assert_eq!(serde_json::from_str::<FasterRasterizers>(&text).unwrap(), all);
+        }
         all.insert(&device("a 1"), interval(1.5, 1.6));
         assert_eq!(all.choice(None, &device("a 1")), RasterizerChoice::Prefer(Rasterizer::Compute));
     }

@@ -23,6 +23,14 @@ fn a_scene_is_traced_and_cached() {
     program.run("truth scene:sphere -o c.exr --size 40x32 --filter box --no-cache -q").text();
     let c = image::read(&program.path("c.exr")).unwrap();
     assert!(kept() == 2 && c.depth.is_none() && c.colour != a.colour);
+    let error = |options: &str| -> f64 {
+        let run = program.run(&format!("truth scene:sphere -o d.exr --size 40x32 --no-cache {options}"));
+        let line = run.err.split_once("standard error ").unwrap().1;
+        line.split(' ').next().unwrap().parse().unwrap()
+    };
+    // The least number of rays a pixel suffices.
+    let [fine, coarse] = [error(""), error("--error 1")];
+    assert!(coarse > 1.5 * fine, "{coarse} {fine}");
 }
 
 #[test]

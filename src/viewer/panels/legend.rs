@@ -54,13 +54,21 @@ pub fn show(ui: &Ui, free: Rect, picture: Rect, state: &ViewState, ui_state: &Ui
 
 /// The legend of a picture; `None` if surfels have their own colours.
 fn legend_of(state: &ViewState, range: Option<(Shading, ValueRange)>) -> Option<Legend> {
-    let shading = state.settings()?.shading;
+    legend_of_shading(state.settings()?.shading, range, || state.colour_bar())
+}
+
+/// The legend of a shading, with the range of the last picture's values and the map of the surfels' colours.
+fn legend_of_shading(
+    shading: Shading,
+    range: Option<(Shading, ValueRange)>,
+    bar: impl FnOnce() -> Option<ColourBar>,
+) -> Option<Legend> {
     // The range may belong to the picture before.
     let range = range.filter(|(of, _)| *of == shading).map(|(_, range)| range);
     let from_0 = |range: ValueRange| ValueRange { min: 0.0, max: range.max.max(1.0) };
     let (name, range, colours) = match shading {
         Shading::Lit | Shading::Colour | Shading::Edl => {
-            let ColourBar { name, scale: ColourScale { map, range }, .. } = state.colour_bar()?;
+            let ColourBar { name, scale: ColourScale { map, range }, .. } = bar()?;
             return Some(Legend { name, range: Some(range), colours: Colours::Map(map) });
         }
         Shading::Normal => ("normal: x, y, z from −1 to 1 as red, green, blue", None, Colours::None),
@@ -106,5 +114,26 @@ impl Legend {
         ] {
             painter.text(at + vec2(0.0, 2.0), align, short_in(value, &range), font.clone(), ink);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_begin_at_0_and_reach_1_at_least() {
+        let range = |shading: Shading, of: Shading, [min, max]: [f64; 2]| {
+            let legend = legend_of_shading(shading, Some((of, ValueRange { min, max })), || None)?;
+            legend.range.map(|range| [range.min, range.max])
+        };
+        for sum in [Shading::Overlap, Shading::Weight] {
+            assert_eq!(range(sum, sum, [3.0, 7.0]), Some([0.0, 7.0]));
+            assert_eq!(range(sum, sum, [0.0, 0.2]), Some([0.0, 1.0]));
+            assert_eq!(range(sum, Shading::Depth, [3.0, 7.0]), None, "the picture before");
+        }
+        assert_eq!(range(Shading::Depth, Shading::Depth, [3.0, 7.0]), Some([3.0, 7.0]));
+        assert_eq!(range(Shading::Normal, Shading::Depth, [3.0, 7.0]), None);
+        assert!(legend_of_shading(Shading::Lit, None, || None).is_none());
     }
 }
