@@ -96,14 +96,14 @@ fn the_report_has_the_settings_as_given() {
     let lighting = json!({
         "albedo": vec![0.6f32; 3], "ambient": 0.08f32, "headlight": 0.87f32, "specular": 0.06f32, "shininess": 40.0, "directional": [],
     });
-    let picture = "--lod 0.25 --max-points 1000 --cull none --edl 3 --ao=0.5 --background 255,0,0";
+    let picture = "--lod 0.25 --max-points 150 --cull none --edl 3 --ao=0.5 --background 255,0,0";
     let report = render(&format!(
         "--footprint disc --filter object --visibility axis --normalization none --shade splat --cutoff 1.5 --lowpass 2 \
          --pixel-filter gaussian:0.5 --widen all --epsilon 1.25 --alpha mask --edges nearest {picture}"
     ));
     let expected = json!({
         "footprint": "disc", "kernel": "gaussian", "filter": "object", "visibility": "axis", "normalization": "none", "shade": "splat",
-        "cutoff": 1.5, "lowpass": 2.0, "pixel_filter": 0.5, "widen": "all", "point_size": 2.0, "lod": 0.25, "max_points": 1000,
+        "cutoff": 1.5, "lowpass": 2.0, "pixel_filter": 0.5, "widen": "all", "point_size": 2.0, "lod": 0.25, "max_points": 150,
         "epsilon": 1.25, "cull": "none", "alpha": "mask", "edges": "nearest", "shading": "edl", "edl": 3.0, "ao": 0.5,
         "background": [1.0, 0.0, 0.0], "lighting": lighting,
     });
@@ -124,7 +124,7 @@ fn the_report_has_the_settings_as_given() {
     };
     let (settings, _) = pull_push(&format!("--alpha coverage --pixel-filter gaussian:0.5 {picture}"));
     let expected = json!({
-        "rules": "robust", "pixel_filter": 0.5, "lod": 0.25, "max_points": 1000, "cull": "none", "alpha": "coverage",
+        "rules": "robust", "pixel_filter": 0.5, "lod": 0.25, "max_points": 150, "cull": "none", "alpha": "coverage",
         "shading": "edl", "edl": 3.0, "ao": 0.5, "background": [1.0, 0.0, 0.0], "lighting": lighting,
     });
     assert_eq!(settings, expected);

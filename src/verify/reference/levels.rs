@@ -21,10 +21,15 @@ impl LevelOfDetail {
     /// # Errors
     /// Invalid settings, sizes and cameras.
     pub fn new(camera: &Camera, size: [u32; 2], settings: &Settings) -> Result<Self> {
+        Self::at(settings.lod, camera, size, settings)
+    }
+
+    /// The same at another level of detail than that of the settings, px.
+    fn at(lod: f32, camera: &Camera, size: [u32; 2], settings: &Settings) -> Result<Self> {
         let projector = Projector::new(camera, size, settings)?;
         let focal = 0.5 * projector.size.y * camera.projection.y_axis.y.abs();
         Ok(Self {
-            reach: focal / f64::from(settings.lod),
+            reach: focal / f64::from(lod),
             eye: camera.view.inverse().transform_point3(DVec3::ZERO),
             perspective: projector.depth.perspective,
         })
@@ -68,8 +73,8 @@ pub fn drawn(
         let drawn = table.most_drawn(surfels.len() as u64, surfels.origin, camera, size);
         drawn.least_lod(most)
     });
-    let settings = Settings { lod: settings.lod.max(most), ..settings.clone() };
-    let detail = LevelOfDetail::new(camera, size, &settings)?;
+    // The greatest level for a number of points is above that of settings.
+    let detail = LevelOfDetail::at(settings.lod.max(most), camera, size, settings)?;
     let mut drawn = surfels.clone();
     let others: Vec<usize> = (0..surfels.len())
         .filter(|&i| surfels.is_valid(i) && !detail.decision(surfels, table, i).0)
