@@ -24,6 +24,7 @@ layout(push_constant) uniform Hierarchy {
 
 layout(constant_id = 31) const bool COVERAGE = false; // α is the covered part of a pixel
 layout(constant_id = 47) const bool SLICED = false;
+layout(constant_id = 82) const bool LIMITED_LOOPS = true; // the device stops long loops
 layout(constant_id = 72) const bool MIXED = false; // pixels at edges show the surface behind, too
 #ifdef FRONT_TILES
 layout(constant_id = 68) const bool CULL_AUTO = false; // pass sides culls some splats that face away
@@ -220,9 +221,9 @@ bool tile_fragment(TileSplat splat, vec2 d, out vec2 m, out float key, out float
     return inside && rank > 0.0 && key > frame.key_far && key <= nearest_key();
 }
 
-// lavapipe stops all loops of an invocation after 65,535 iterations in total (LP_MAX_TGSI_LOOP_ITERATIONS), which would leave holes: each
-// walk stops earlier, after its share. A walk visits some 30,000 visible splats per tile and dispatch; frames that may have more are
-// SLICED. Loops within a step of a walk are unrolled, by [[unroll]] where the compiler would find them too long.
+// LIMITED_LOOPS: lavapipe stops all loops of an invocation after 65,535 iterations in total (LP_MAX_TGSI_LOOP_ITERATIONS), which would leave
+// holes: each walk stops earlier, after its share. A walk visits some 30,000 visible splats per tile and dispatch; frames that may have more
+// are SLICED. Loops within a step of a walk are unrolled, by [[unroll]] where the compiler would find them too long.
 
 // Whether a walk stopped before it had visited all splats.
 bool incomplete = false;

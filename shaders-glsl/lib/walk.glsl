@@ -1,6 +1,6 @@
 // Visits the splats whose boxes overlap the tile. The including file defines
 //   WALK: the name of the function;
-//   WALK_STEPS: the number of loop iterations after which it stops;
+//   WALK_STEPS: the number of loop iterations after which it stops where the device has LIMITED_LOOPS;
 //   WALK_CULL_KEY: inverse depth (κ) of the farthest visible surface; boxes behind it are skipped. It may rise during the walk;
 //   WALK_BATCH(count, id): processes a batch of `count` splats, at most LANES; each lane has the `id` of one;
 //   WALK_UNROLLED: optional; splats of a batch that one loop iteration processes, UNROLLED if undefined;
@@ -38,7 +38,7 @@ void WALK(uvec2 origin, uvec2 last, uint first, uint end, bool more) {
         open_groups = group_bits(hits, depth);
         block_key = nearest_key(box);
     }
-    int steps_left = min(WALK_STEPS, int(hierarchy.most_steps));
+    int steps_left = LIMITED_LOOPS ? min(WALK_STEPS, int(hierarchy.most_steps)) : int(hierarchy.most_steps);
     uint nodes_start = level_start(1), parents_start = level_start(BLOCKS - 1);
     do {
         do {

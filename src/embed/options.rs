@@ -17,7 +17,7 @@ pub struct Options {
     /// See [`RenderOptions::rasterizer`](crate::frame::RenderOptions::rasterizer).
     pub rasterizer: RasterizerChoice,
     /// See [`RenderOptions::most_splats`](crate::frame::RenderOptions::most_splats). With `None`, a tile of one frame may lack splats on
-    /// lavapipe, which stops long loops: see [`Renderer::is_incomplete`](super::Renderer::is_incomplete).
+    /// devices that stop long loops, as lavapipe does ([`Capabilities::limited_loops`](crate::vk::Capabilities::limited_loops)): see [`Renderer::is_incomplete`](super::Renderer::is_incomplete).
     pub most_splats: Option<u32>,
 }
 

@@ -37,8 +37,9 @@ pub struct RenderOptions {
     /// or to inspect intermediate targets. The picture is identical bit by bit.
     pub split: bool,
     /// Bound on the work of a frame on the compute path: about the maximum number of splats that each tile of 8 × 8 px visits in visibility,
-    /// and again in coverage and attribute. A tile with more lacks the farthest ones, see [`FrameReport::incomplete`]. `None` visits all: a
-    /// frame of which a tile lacks splats, which happens on lavapipe, is rendered again in slices. The raster path has no such bound, so that
+    /// and again in coverage and attribute. A tile with more lacks the farthest ones, see [`FrameReport::incomplete`]. `None` visits all: on
+    /// devices that stop long loops ([`Capabilities::limited_loops`](crate::vk::Capabilities::limited_loops)), dense frames are rendered in
+    /// slices, and a frame of which a tile lacks splats is rendered again, sliced. The raster path has no such bound, so that
     /// frames of splats with a bound take the compute path, or are rejected.
     pub most_splats: Option<u32>,
 }
@@ -146,7 +147,9 @@ impl Renderer {
     /// Whether the frame is to be rendered again, in slices, because a tile lacks splats without a bound on them.
     fn lacks_slices(&self, report: &FrameReport) -> bool {
         let sliced = self.frame.current().is_none_or(|current| current.variant.sliced);
-        report.incomplete && !sliced && self.frame.most_splats().is_none()
+        let can_slice =
+            self.frame.device().capabilities().limited_loops && self.frame.most_splats().is_none();
+        report.incomplete && !sliced && can_slice
     }
 
     /// Enables or disables profiling of later frames, if [`RenderOptions::profile`] is set: the cost of a whole frame is best measured

@@ -1,4 +1,5 @@
-//! Slicing: decides whether tiles may have more splats than one dispatch visits (`lib/tile.glsl`).
+//! Slicing: decides whether tiles may have more splats than one dispatch visits (`lib/tile.glsl`), on devices that stop long loops
+//! ([`Capabilities::limited_loops`](crate::vk::Capabilities)).
 
 use super::targets::TILE;
 use crate::error::Result;
@@ -78,7 +79,7 @@ impl Slicing {
     }
 }
 
-/// Whether frames of these scenes need slices at any camera.
+/// Whether frames of these scenes need slices at any camera, if the device stops long loops.
 pub fn may_slice(scenes: &[Placed<'_>]) -> bool {
     scenes.iter().map(|placed| placed.scene.capacity() as f64).sum::<f64>() >= MOST_SPLATS
 }

@@ -331,11 +331,11 @@ pub fn workgroup_of(device: &Device, extent: ListExtent) -> Option<TileWorkgroup
     // Splats have the most texels of a list's buffers.
     let texels = SPLAT / TexelView::TEXEL * extent.splats <= capabilities.max_texels;
     let nodes = BOX * extent.splats / (FAN_OUT - 1);
-    let workgroup = TileWorkgroup::of(capabilities.subgroup_size, capabilities.shared_lanes);
+    let workgroup = TileWorkgroup::of(capabilities);
     if workgroup.subgroups && texels && nodes.max(clips) <= range {
         return Some(workgroup);
     }
-    ((SPLAT * extent.splats).max(clips) <= range).then(|| TileWorkgroup::of(0, capabilities.shared_lanes))
+    ((SPLAT * extent.splats).max(clips) <= range).then(|| TileWorkgroup::of_shared_memory(capabilities))
 }
 
 /// Instance capacity for so many instances, so that adding one does not reallocate each time, unless it begins a batch: at most an eighth more,

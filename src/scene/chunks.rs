@@ -34,6 +34,7 @@ mod tests {
             fragment_writes: true,
             independent_blend: true,
             timestamps: None,
+            limited_loops: false,
             subgroup_size: 0,
             subgroup_size_control: false,
             shared_lanes: 8,

@@ -26,6 +26,9 @@ pub struct DeviceLimits {
     pub dynamic_rendering: Option<bool>,
     /// `false` hides timestamps.
     pub timestamps: Option<bool>,
+    /// Whether the device stops long loops, see [`Capabilities::limited_loops`]. `false` on a device that does: scenes with many splats per
+    /// tile have holes.
+    pub limited_loops: Option<bool>,
     /// Upper bound of the subgroup size in which compute shaders pass values on; below 8 they do so by shared memory.
     pub subgroup_size: Option<u32>,
     /// Invocations of a workgroup that passes values on by shared memory: 8, 16, 32 or 64.
@@ -71,6 +74,9 @@ pub struct Capabilities {
     pub independent_blend: bool,
     /// Timestamp period, ns, and mask of valid bits; `None` without timestamps.
     pub timestamps: Option<(f32, u64)>,
+    /// The loops of an invocation end after 65,535 iterations (lavapipe): walks over a tile stop before that, and frames with many splats per
+    /// tile are sliced. Assumed of devices that run on the CPU.
+    pub limited_loops: bool,
     /// Subgroup size of compute shaders that shuffle, of all subgroups or of pipelines that require it; otherwise 0.
     pub subgroup_size: u32,
     /// Pipelines can require that subgroup size, and full subgroups.
@@ -160,8 +166,9 @@ impl Capabilities {
         // SAFETY: by the caller.
         let (subgroup_size, controlled) =
             unsafe { subgroup_size(instance, physical, enabled.subgroup_size_control) };
+        let is_cpu = properties.device_type == vk::PhysicalDeviceType::CPU;
         // A subgroup of most GPUs, so that no lanes idle.
-        let shared_lanes = if properties.device_type == vk::PhysicalDeviceType::CPU { 8 } else { 32 };
+        let shared_lanes = if is_cpu { 8 } else { 32 };
         let valid_bits = families[family as usize].timestamp_valid_bits;
         let timestamps = valid_bits > 0 && mask.timestamps != Some(false);
         Self {
@@ -172,6 +179,7 @@ impl Capabilities {
             independent_blend: enabled.independent_blend,
             timestamps: timestamps
                 .then_some((limits.timestamp_period, u64::MAX >> (64 - valid_bits.clamp(1, 64)))),
+            limited_loops: mask.limited_loops.unwrap_or(is_cpu),
             subgroup_size: subgroup_size.min(mask.subgroup_size.unwrap_or(u32::MAX)),
             subgroup_size_control: controlled && mask.subgroup_size.is_none_or(|most| subgroup_size <= most),
             shared_lanes: mask

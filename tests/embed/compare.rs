@@ -12,6 +12,7 @@ pub const NARROW: DeviceLimits = DeviceLimits {
     blend_float32: None,
     subgroup_size: None,
     max_texels: None,
+    limited_loops: None,
     int64_atomics: None,
     fragment_writes: None,
     independent_blend: None,

@@ -29,6 +29,7 @@ const NO_ATOMICS: DeviceLimits = DeviceLimits {
     timestamps: None,
     subgroup_size: None,
     max_texels: None,
+    limited_loops: None,
     max_storage_buffer_range: None,
     storage_buffer_alignment: None,
     max_storage_buffers: None,

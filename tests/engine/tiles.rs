@@ -345,3 +345,37 @@ fn a_dense_spot_in_a_large_scene_has_all_of_its_splats() {
     }
     assert_silent(&device);
 }
+
+/// Devices that do not stop long loops draw crowded tiles in one dispatch, those that do in slices.
+#[test]
+fn only_devices_that_stop_long_loops_draw_slices() {
+    let size = [8; 2];
+    // In one tile, as many as one slice has, and more than a walk visits where loops are limited; fewer than lavapipe stops.
+    for (points, is_stopped) in [(20_000, false), (36_000, true)] {
+        let surfels = sphere(points);
+        let frames = |limited: bool| {
+            let device = device(DeviceLimits { limited_loops: Some(limited), ..Default::default() })?;
+            let scene = Scene::upload(&device, &surfels).unwrap();
+            // Without a bound, and with one beyond all splats: walks alone stop.
+            let frames = [None, Some(1 << 30)].map(|most_splats| {
+                let options = RenderOptions { size, most_splats, ..all_outputs(Rasterizer::Compute) };
+                let mut renderer = Renderer::new(&device, options).unwrap();
+                let rendered = renderer.render_picture(&scene, &camera(size), &splats_alone()).unwrap();
+                // Slices have targets between their passes.
+                let is_sliced = renderer.targets().iter().any(|target| target.name == "sums1");
+                (rendered.0, is_sliced, rendered.1.incomplete)
+            });
+            assert_silent(&device);
+            Some(frames)
+        };
+        let Some([sliced, bounded]) = frames(true) else { return };
+        assert_eq!((sliced.1, sliced.2), (true, false), "{points}");
+        assert_eq!((bounded.1, bounded.2), (false, is_stopped), "{points}");
+        for (picture, is_sliced, incomplete) in frames(false).unwrap() {
+            assert_eq!((is_sliced, incomplete), (false, false), "{points}");
+            // Two slices have sums of another order than one dispatch.
+            let most = if is_stopped { 1e-4 } else { 0.0 };
+            assert!(largest_difference(&picture, &sliced.0) <= most, "{points}");
+        }
+    }
+}

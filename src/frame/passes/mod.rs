@@ -30,7 +30,7 @@ pub mod visibility;
 
 use crate::frame::pass::{Domain, Program};
 use crate::frame::variant::Variant;
-use crate::vk::shaders::Module;
+use crate::vk::shaders::{Module, constant};
 
 /// Specialization constant id of the workgroup size of tile passes: LANES of `lib/workgroup.glsl`.
 const LANES: u32 = 44;
@@ -38,7 +38,9 @@ const LANES: u32 = 44;
 /// Program of a tile pass: one module exchanges values through shared memory, the other by subgroup shuffles.
 fn tiles(variant: &Variant, [shared, subgroups]: [&'static Module; 2]) -> Vec<Program> {
     let module = if variant.workgroup.subgroups { subgroups } else { shared };
-    let program = Program::compute(module, Domain::Tiles).with(LANES, variant.workgroup.lanes);
+    let program = Program::compute(module, Domain::Tiles)
+        .with(LANES, variant.workgroup.lanes)
+        .with(constant::LIMITED_LOOPS, variant.workgroup.limited_loops);
     vec![Program { is_subgroup: variant.workgroup.subgroups, ..program }]
 }
 
