@@ -69,8 +69,7 @@ pub fn describe(
     let splats_per_tile =
         if is_seen { total_splats_per_tile(scenes, camera, options.size, lod) } else { 0.0 };
     // With a bound on the work of a tile there are no slices.
-    let may_slice =
-        device.capabilities().limited_loops && options.most_splats.is_none() && may_slice(scenes);
+    let may_slice = device.capabilities().limited_loops && options.most_splats.is_none() && may_slice(scenes);
     let sliced = may_slice && slicing.needs_slices(scenes, splats_per_tile);
     if sliced {
         find_tiles(device, &distinct, &uniforms, perspective, options.size, &mut selections);

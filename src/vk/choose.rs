@@ -1,9 +1,10 @@
 //! Device selection.
 
 use super::instance::Instance;
-use super::requirements::{API_VERSION, QUEUE};
+use super::requirements::{API_VERSION, QUEUE, has_extension};
 use crate::error::{Error, Result};
 use ash::vk;
+use std::ffi::CStr;
 
 /// A device of this machine, as shown to the user.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,15 +35,32 @@ pub(super) struct Candidate {
     pub(super) description: DeviceDescription,
 }
 
+/// What presentation to a window requires of a device.
+#[cfg_attr(not(feature = "window"), allow(dead_code, reason = "made for windows"))]
+pub(super) struct Presentation<'a> {
+    /// Device extensions.
+    pub(super) extensions: &'a [&'static CStr],
+    /// Whether a queue family of a device presents to the window.
+    pub(super) presents: &'a dyn Fn(vk::PhysicalDevice, u32) -> bool,
+}
+
+/// Why a device is refused that has no queue family for frames.
+pub(super) const NO_FAMILY: &str = "no queue family does graphics and compute";
+
 /// Every device of this machine, in index order. Returns an error without Vulkan.
 pub fn describe_devices() -> Result<Vec<DeviceDescription>> {
     let instance = Instance::new(false, &[])?;
-    Ok(candidates(&instance)?.into_iter().map(|candidate| candidate.description).collect())
+    Ok(candidates(&instance, None)?.into_iter().map(|candidate| candidate.description).collect())
 }
 
-/// Selects the device that `wanted` names by index or part of its name, otherwise the usable device with the highest score.
-pub(super) fn choose(instance: &Instance, wanted: Option<&str>) -> Result<Candidate> {
-    let all = candidates(instance)?;
+/// Selects the device that `wanted` names by index or part of its name, otherwise the usable device with the highest score. With a `window`,
+/// devices that do not present to it are refused.
+pub(super) fn choose(
+    instance: &Instance,
+    wanted: Option<&str>,
+    window: Option<&Presentation<'_>>,
+) -> Result<Candidate> {
+    let all = candidates(instance, window)?;
     let listing = || {
         let line = |(i, c): (usize, &Candidate)| {
             let refused = c.description.refused.map(|why| format!(", refused: {why}")).unwrap_or_default();
@@ -82,28 +100,48 @@ pub fn preferred<'a>(
         .map(|(index, _)| index)
 }
 
-fn candidates(instance: &Instance) -> Result<Vec<Candidate>> {
+fn candidates(instance: &Instance, window: Option<&Presentation<'_>>) -> Result<Vec<Candidate>> {
     // SAFETY: the instance is alive.
     let devices = unsafe { instance.raw.enumerate_physical_devices() }
         .map_err(|result| Error::NoDevice(format!("vkEnumeratePhysicalDevices: {result}")))?;
-    Ok(devices.into_iter().map(|physical| candidate(instance, physical)).collect())
+    Ok(devices.into_iter().map(|physical| candidate(instance, physical, window)).collect())
 }
 
-fn candidate(instance: &Instance, physical: vk::PhysicalDevice) -> Candidate {
+fn candidate(
+    instance: &Instance,
+    physical: vk::PhysicalDevice,
+    window: Option<&Presentation<'_>>,
+) -> Candidate {
     // SAFETY: `physical` is one of the instance's devices.
     let families = unsafe { instance.raw.get_physical_device_queue_family_properties(physical) };
-    let family = families.iter().position(|family| family.queue_flags.contains(QUEUE));
+    let flags: Vec<_> = families.iter().map(|family| family.queue_flags).collect();
+    let presents = |family| window.is_none_or(|window| (window.presents)(physical, family));
+    let mut extensions = window.iter().flat_map(|window| window.extensions);
     // SAFETY: as above.
-    let description = unsafe { DeviceDescription::of(&instance.raw, physical, family.is_some()) };
-    Candidate { physical, family: family.unwrap_or(0) as u32, description }
+    let has_extensions = extensions.all(|name| unsafe { has_extension(&instance.raw, physical, name) });
+    let family = family_of(&flags, |family| has_extensions && presents(family));
+    // SAFETY: as above.
+    let description = unsafe { DeviceDescription::of(&instance.raw, physical, family.err()) };
+    Candidate { physical, family: family.unwrap_or(0), description }
+}
+
+/// The first queue family for frames that `presents`, or why there is none.
+fn family_of(families: &[vk::QueueFlags], presents: impl Fn(u32) -> bool) -> Result<u32, &'static str> {
+    let usable = || (0..).zip(families).filter(|(_, flags)| flags.contains(QUEUE)).map(|(family, _)| family);
+    usable().next().ok_or(NO_FAMILY)?;
+    usable().find(|family| presents(*family)).ok_or("it does not present to this window")
 }
 
 impl DeviceDescription {
-    /// Describes `physical`; `serves` tells whether one of its queue families can be used.
+    /// Describes `physical`; `unserved` tells why none of its queue families can be used, if so.
     ///
     /// # Safety
     /// `physical` is a device of `instance`, whose version is at least [`API_VERSION`].
-    pub(super) unsafe fn of(instance: &ash::Instance, physical: vk::PhysicalDevice, serves: bool) -> Self {
+    pub(super) unsafe fn of(
+        instance: &ash::Instance,
+        physical: vk::PhysicalDevice,
+        unserved: Option<&'static str>,
+    ) -> Self {
         // SAFETY: by the caller.
         let properties = unsafe { instance.get_physical_device_properties(physical) };
         let new_enough = properties.api_version >= API_VERSION;
@@ -114,11 +152,7 @@ impl DeviceDescription {
             vk::PhysicalDeviceType::CPU => (Self::CPU, 1),
             _ => ("other", 0),
         };
-        let refused = match (new_enough, serves) {
-            (false, _) => Some("it is older than Vulkan 1.1"),
-            (true, false) => Some("no queue family does graphics and compute"),
-            (true, true) => None,
-        };
+        let refused = if new_enough { unserved } else { Some("it is older than Vulkan 1.1") };
         Self {
             name: text(properties.device_name_as_c_str()),
             kind,
@@ -182,5 +216,20 @@ mod tests {
             assert_eq!(preferred(&devices, wanted), expected, "{wanted:?}");
         }
         assert_eq!(preferred([], None), None);
+    }
+
+    #[test]
+    fn the_queue_family_of_a_window_presents_to_it() {
+        let (draws, computes) = (vk::QueueFlags::GRAPHICS, vk::QueueFlags::COMPUTE);
+        let families = [draws, draws | computes, computes, draws | computes | vk::QueueFlags::TRANSFER];
+        // Without a window, every family will do.
+        assert_eq!(family_of(&families, |_| true), Ok(1));
+        assert_eq!(family_of(&families, |family| family == 3), Ok(3));
+        for presenting in [0, 2] {
+            let refused = family_of(&families, |family| family == presenting);
+            assert_eq!(refused, Err("it does not present to this window"), "{presenting}");
+        }
+        assert_eq!(family_of(&families[2..3], |_| true), Err(NO_FAMILY));
+        assert_eq!(family_of(&[], |_| true), Err(NO_FAMILY));
     }
 }

@@ -1,6 +1,6 @@
 //! The logical device: one graphics queue, the memory allocator, the pipeline cache, and usage counters.
 
-use super::choose::{DeviceDescription, choose};
+use super::choose::{DeviceDescription, Presentation, choose};
 use super::descriptor_pool::DescriptorPools;
 use super::instance::Instance;
 use super::labels::Labels;
@@ -104,30 +104,30 @@ impl Device {
     /// # Errors
     /// [`Error::NoDevice`] if there is no such device, no Vulkan, or no validation layer although `validate` is set.
     pub fn open(options: &DeviceOptions) -> Result<Arc<Self>> {
-        Self::open_on(Arc::new(Instance::new(options.validate, &[])?), options, &[])
+        Self::open_on(Arc::new(Instance::new(options.validate, &[])?), options, None)
     }
 
-    /// Opens the device that `options` select for presentation to `window`, and creates the window's surface.
+    /// Opens the device that `options` select, of those that present to `window`, and creates the window's surface.
     ///
     /// # Errors
-    /// [`Error::NoDevice`] as [`Device::open`], and if the device cannot present to the window.
+    /// [`Error::NoDevice`] as [`Device::open`], and if no selected device presents to the window.
     #[cfg(feature = "window")]
     pub fn open_for(options: &DeviceOptions, window: Arc<dyn Window>) -> Result<(Arc<Self>, Surface)> {
         let extensions = surface::instance_extensions(&*window)?;
         let instance = Arc::new(Instance::new(options.validate, extensions)?);
         let surface = Surface::new(&instance, window)?;
-        let device = Self::open_on(instance, options, &surface::DEVICE_EXTENSIONS)?;
-        let (_, family) = device.queue()?;
-        surface.check(device.physical, family, &device.description.name)?;
+        let presents = |physical, family| surface.is_served_by(physical, family);
+        let window = Presentation { extensions: &surface::DEVICE_EXTENSIONS, presents: &presents };
+        let device = Self::open_on(instance, options, Some(&window))?;
         Ok((device, surface))
     }
 
     fn open_on(
         instance: Arc<Instance>,
         options: &DeviceOptions,
-        more: &[&'static CStr],
+        window: Option<&Presentation<'_>>,
     ) -> Result<Arc<Self>> {
-        let chosen = choose(&instance, options.select.as_deref())?;
+        let chosen = choose(&instance, options.select.as_deref(), window)?;
         let (physical, family, description) = (chosen.physical, chosen.family, chosen.description);
         // SAFETY: the physical device and the family are of the instance, whose version is 1.1.
         let (enabled, capabilities) = unsafe {
@@ -138,8 +138,9 @@ impl Device {
             [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&[1.0])];
         // SAFETY: the physical device is the instance's.
         let subset = unsafe { portability_subset(&instance.raw, physical) };
+        let of_window = window.iter().flat_map(|window| window.extensions).copied();
         let extensions: Vec<_> =
-            enabled.extensions().chain(more.iter().copied()).chain(subset).map(CStr::as_ptr).collect();
+            enabled.extensions().chain(of_window).chain(subset).map(CStr::as_ptr).collect();
         let mut features = enabled.features();
         let core = features.core;
         let info = vk::DeviceCreateInfo::default()

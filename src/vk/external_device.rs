@@ -1,6 +1,6 @@
 //! External devices: imported from a host.
 
-use super::choose::DeviceDescription;
+use super::choose::{DeviceDescription, NO_FAMILY};
 use super::descriptor_pool::DescriptorPools;
 use super::device::{Device, Owner, UsageCounters};
 use super::labels::Labels;
@@ -64,9 +64,9 @@ impl Device {
                 "queue family {queue_family}: the device has {count}, numbered from 0"
             )));
         };
-        let serves = family.queue_flags.contains(QUEUE);
+        let unserved = (!family.queue_flags.contains(QUEUE)).then_some(NO_FAMILY);
         // SAFETY: as above.
-        let description = unsafe { DeviceDescription::of(instance, physical, serves) };
+        let description = unsafe { DeviceDescription::of(instance, physical, unserved) };
         if let Some(cause) = description.refused {
             let name = &description.name;
             return Err(Error::NoDevice(format!("{name}, queue family {queue_family}: {cause}")));

@@ -64,6 +64,20 @@ pub const ABILITIES: [Ability; 4] = [
     },
 ];
 
+/// Whether `physical` has a device extension.
+///
+/// # Safety
+/// `physical` is a device of `instance`.
+pub(super) unsafe fn has_extension(
+    instance: &ash::Instance,
+    physical: vk::PhysicalDevice,
+    name: &CStr,
+) -> bool {
+    // SAFETY: by the caller.
+    let extensions = unsafe { instance.enumerate_device_extension_properties(physical) }.unwrap_or_default();
+    extensions.iter().any(|found| found.extension_name_as_c_str() == Ok(name))
+}
+
 /// VK_KHR_portability_subset, which must be enabled if a device has it. The engine uses none of the features that it makes optional, as far
 /// as known.
 ///
@@ -75,8 +89,7 @@ pub(super) unsafe fn portability_subset(
 ) -> Option<&'static CStr> {
     const NAME: &CStr = ash::khr::portability_subset::NAME;
     // SAFETY: by the caller.
-    let extensions = unsafe { instance.enumerate_device_extension_properties(physical) }.unwrap_or_default();
-    extensions.iter().any(|found| found.extension_name_as_c_str() == Ok(NAME)).then_some(NAME)
+    unsafe { has_extension(instance, physical, NAME) }.then_some(NAME)
 }
 
 impl Abilities {

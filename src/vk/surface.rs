@@ -52,16 +52,11 @@ impl Surface {
         device.instance().handle() == self.instance.raw.handle()
     }
 
-    /// Returns an error unless the queue family of the device called `name` can present to the surface.
-    pub(super) fn check(&self, physical: vk::PhysicalDevice, family: u32, name: &str) -> Result<()> {
+    /// Whether a queue family of a device presents to the surface.
+    pub(super) fn is_served_by(&self, physical: vk::PhysicalDevice, family: u32) -> bool {
         // SAFETY: the device is of the surface's instance, and the family one of its own.
         let served = unsafe { self.loader.get_physical_device_surface_support(physical, family, self.raw) };
-        if served.map_err(Error::vulkan("vkGetPhysicalDeviceSurfaceSupportKHR"))? {
-            return Ok(());
-        }
-        Err(Error::NoDevice(format!(
-            "{name} does not present to this window: choose another device, which `surfel devices` lists"
-        )))
+        served.unwrap_or(false)
     }
 }
 
