@@ -1,6 +1,7 @@
 //! Device selection.
 
 use super::instance::Instance;
+use super::limits::STORAGE_BUFFERS;
 use super::requirements::{API_VERSION, QUEUE, has_extension};
 use crate::error::{Error, Result};
 use ash::vk;
@@ -144,7 +145,7 @@ impl DeviceDescription {
     ) -> Self {
         // SAFETY: by the caller.
         let properties = unsafe { instance.get_physical_device_properties(physical) };
-        let new_enough = properties.api_version >= API_VERSION;
+        let (new_enough, limits) = (properties.api_version >= API_VERSION, &properties.limits);
         let (kind, score) = match properties.device_type {
             vk::PhysicalDeviceType::DISCRETE_GPU => ("discrete GPU", 4),
             vk::PhysicalDeviceType::INTEGRATED_GPU => ("integrated GPU", 3),
@@ -152,7 +153,8 @@ impl DeviceDescription {
             vk::PhysicalDeviceType::CPU => (Self::CPU, 1),
             _ => ("other", 0),
         };
-        let refused = if new_enough { unserved } else { Some("it is older than Vulkan 1.1") };
+        let buffers = limits.max_per_stage_descriptor_storage_buffers;
+        let refused = refusal(properties.api_version, buffers).or(unserved);
         Self {
             name: text(properties.device_name_as_c_str()),
             kind,
@@ -162,6 +164,14 @@ impl DeviceDescription {
             score,
         }
     }
+}
+
+/// Why a device of this version, with so many storage buffers per stage, cannot be used, if so.
+fn refusal(api_version: u32, storage_buffers: u32) -> Option<&'static str> {
+    const { assert!(STORAGE_BUFFERS == 15) };
+    let is_old = (api_version < API_VERSION).then_some("it is older than Vulkan 1.1");
+    let too_few = storage_buffers < STORAGE_BUFFERS;
+    is_old.or(too_few.then_some("it allows fewer than 15 storage buffers per shader stage"))
 }
 
 fn driver(instance: &ash::Instance, physical: vk::PhysicalDevice, new_enough: bool, number: u32) -> String {
@@ -216,6 +226,16 @@ mod tests {
             assert_eq!(preferred(&devices, wanted), expected, "{wanted:?}");
         }
         assert_eq!(preferred([], None), None);
+    }
+
+    #[test]
+    fn devices_with_too_few_storage_buffers_are_refused_when_listed() {
+        assert_eq!(refusal(API_VERSION, STORAGE_BUFFERS), None);
+        let few = refusal(API_VERSION, STORAGE_BUFFERS - 1).unwrap();
+        assert!(few.contains("15 storage buffers"), "{few}");
+        assert!(refusal(vk::API_VERSION_1_0, 4).unwrap().contains("older"));
+        let devices = [device("Few", 4, Some(few)), device("Enough", 3, None)];
+        assert_eq!((preferred(&devices, None), preferred(&devices, Some("few"))), (Some(1), None));
     }
 
     #[test]

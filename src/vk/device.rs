@@ -102,7 +102,9 @@ impl Device {
     /// Opens the device that `options` select.
     ///
     /// # Errors
-    /// [`Error::NoDevice`] if there is no such device, no Vulkan, or no validation layer although `validate` is set.
+    /// [`Error::NoDevice`] if there is no such device, no Vulkan, or no validation layer although `validate` is set. Devices that are older
+    /// than Vulkan 1.1, allow fewer than 15 storage buffers per stage, or lack a queue family with graphics and compute are not selected: see
+    /// [`DeviceDescription::refused`].
     pub fn open(options: &DeviceOptions) -> Result<Arc<Self>> {
         Self::open_on(Arc::new(Instance::new(options.validate, &[])?), options, None)
     }

@@ -106,7 +106,7 @@ pub struct Capabilities {
 }
 
 /// Storage buffers of a shader stage that some frames need: a scene with all streams, with counts and coverage.
-const STORAGE_BUFFERS: u32 = 15;
+pub(super) const STORAGE_BUFFERS: u32 = 15;
 
 /// Largest width and height of a picture: a splat stores its anchor pixel in 15 bits per coordinate (`lib/splat.glsl`).
 const LARGEST_SIDE: u32 = 1 << 15;
