@@ -187,8 +187,8 @@ uint load_disc(uint i, out Disc disc) {
     disc.hi = vec3(dx.x, dy.x, dz.x);
     disc.lo = vec3(dx.y, dy.y, dz.y) - view.eye_lo.xyz;
     disc.w = PERSPECTIVE ? pixel_row(2, disc.hi, disc.lo) : vec2(1.0, 0.0);
-    // Written so that NaN fails the test.
-    if (!(disc.w.x > 0.0)) return BEHIND;
+    // Here and below, values may be NaN where positions are too large for the view.
+    if (!is_number(disc.w.x) || disc.w.x <= 0.0) return BEHIND;
     disc.h = dot_double(disc.hi, disc.lo, n, vec3(0.0));
     disc.facing = PERSPECTIVE ? disc.h : dot_double(n, vec3(0.0), view.forward_hi.xyz, view.forward_lo.xyz);
     return DRAWN;
@@ -209,7 +209,10 @@ uint footprint(uint i, out Splat splat) {
     vec3 S = sigma * to_pixel(disc.axes[0]);
     vec3 T = sigma * to_pixel(disc.axes[1]);
     float w = disc.w.x / frame.cutoff;
-    if (FOOTPRINT != POINT && !(clearance(disc, S, T) > LEAST_CLEARANCE * w * w)) return EYE_PLANE;
+    if (FOOTPRINT != POINT) {
+        float clear = clearance(disc, S, T);
+        if (!is_number(clear) || clear <= LEAST_CLEARANCE * w * w) return EYE_PLANE;
+    }
     if (CULL_BACK && disc.facing.x >= 0.0 && !is_two_sided(i)) return BACK;
 
     disc.x = pixel_row(0, disc.hi, disc.lo);
@@ -217,9 +220,10 @@ uint footprint(uint i, out Splat splat) {
     Image image = image_of(disc, sigma, S, T);
     vec2 reach = largest_stretch() * half_extent(image.conic.axis, attribute_variance(image.conic.variance));
     vec2 centre = vec2(disc.x.x, disc.y.x) / disc.w.x + image.conic.offset;
-    bool inside = all(lessThanEqual(centre - reach, frame.viewport)) && all(greaterThanEqual(centre + reach, vec2(0.0)));
-    if (!inside || !(image.sqrt_det >= LEAST_AREA)) return OUTSIDE;
-    if (!(image.conic.variance.x <= LARGEST_VARIANCE)) return INVALID;
+    vec2 low = centre - reach, high = centre + reach;
+    bool inside = are_numbers(vec4(low, high)) && all(lessThanEqual(low, frame.viewport)) && all(greaterThanEqual(high, vec2(0.0)));
+    if (!inside || !is_number(image.sqrt_det) || image.sqrt_det < LEAST_AREA) return OUTSIDE;
+    if (!is_number(image.conic.variance.x) || image.conic.variance.x > LARGEST_VARIANCE) return INVALID;
 
     uvec2 pixel = uvec2(clamp(centre, vec2(0.0), frame.viewport - 1.0));
     vec2 anchor = vec2(pixel) + 0.5;

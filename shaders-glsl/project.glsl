@@ -43,9 +43,10 @@ layout(local_size_x = 64) in;
 #endif
 
 #if !defined(COUNT_ONLY) && !defined(RASTER_POINTS)
-// Projects a point of element i of the chunk to a pixel.
+// Projects a point of element i of the chunk to a pixel, clamped to the viewport: the buffer is written without a check of bounds.
 void project(uint i, ivec2 at, float distance) {
-    uint pixel = uint(at.y) * uint(frame.viewport.x) + uint(at.x);
+    uvec2 size = uvec2(frame.viewport), inside = min(uvec2(at), size - 1);
+    uint pixel = inside.y * size.x + inside.x;
     atomicMin(nearest_points[pixel], nearest_point(first_id() + i, world_distance(distance)));
 }
 #endif

@@ -39,8 +39,8 @@ uint point_of(uint i, out Point point) {
     vec2 dx = two_sum(p.x, -view.eye_hi.x), dy = two_sum(p.y, -view.eye_hi.y), dz = two_sum(p.z, -view.eye_hi.z);
     vec3 hi = vec3(dx.x, dy.x, dz.x), lo = vec3(dx.y, dy.y, dz.y) - view.eye_lo.xyz;
     float z = counted_distance(dot_double(hi, lo, view.forward_hi.xyz, view.forward_lo.xyz)).x;
-    // Written so that NaN fails the test.
-    if (!(z >= view.near && z > 0.0)) return BEHIND;
+    // Here and below, values may be NaN where positions are too large for the view.
+    if (!is_number(z) || z < view.near || z <= 0.0) return BEHIND;
     if (key_at_distance(z) < frame.key_far) return BEHIND;
     point.distance = z;
     point.facing = (PERSPECTIVE ? dot_double(hi, lo, n, vec3(0.0)) : dot_double(n, vec3(0.0), view.forward_hi.xyz, view.forward_lo.xyz)).x;
@@ -51,7 +51,8 @@ uint point_of(uint i, out Point point) {
     vec2 fraction, corner;
     corner.x = integer_part(pixel_row(0, hi, lo), w, fraction.x);
     corner.y = integer_part(pixel_row(1, hi, lo), w, fraction.y);
-    if (!(all(greaterThanEqual(corner, vec2(0.0))) && all(lessThan(corner, frame.viewport)))) return OUTSIDE;
+    bool inside = are_numbers(corner.xyxy) && all(greaterThanEqual(corner, vec2(0.0))) && all(lessThan(corner, frame.viewport));
+    if (!inside) return OUTSIDE;
     point.pixel = ivec2(corner);
     point.offset = fraction - 0.5;
     return DRAWN;

@@ -153,6 +153,15 @@ bool is_bounded(vec3 v) {
     return all(lessThanEqual(floatBitsToUint(v) & 0x7fffffffu, uvec3(floatBitsToUint(LARGEST_VALUE))));
 }
 
+// Whether no value is NaN: compares bits, too.
+bool are_numbers(vec4 v) {
+    return all(lessThanEqual(floatBitsToUint(v) & 0x7fffffffu, uvec4(0x7f800000u)));
+}
+
+bool is_number(float v) {
+    return (floatBitsToUint(v) & 0x7fffffffu) <= 0x7f800000u;
+}
+
 bool is_unit(vec3 v, float tolerance) {
     return is_bounded(v) && abs(dot(v, v) - 1.0) <= tolerance;
 }
