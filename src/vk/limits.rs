@@ -1,6 +1,7 @@
 //! Capabilities of a device, and a mask that hides some of them so that tests can run every fallback.
 
 use super::requirements::Abilities;
+use super::subgroups::Subgroups;
 use crate::error::{Error, Result};
 use ash::vk;
 
@@ -29,7 +30,8 @@ pub struct DeviceLimits {
     /// Whether the device stops long loops, see [`Capabilities::limited_loops`]. `false` on a device that does: scenes with many splats per
     /// tile have holes.
     pub limited_loops: Option<bool>,
-    /// Upper bound of the subgroup size in which compute shaders pass values on; below 8 they do so by shared memory.
+    /// Upper bound of the subgroup size in which compute shaders pass values on; below 8 they do so by shared memory. Of a range of sizes that
+    /// pipelines can require, the largest one up to this; `None` chooses by the range.
     pub subgroup_size: Option<u32>,
     /// Invocations of a workgroup that passes values on by shared memory: 8, 16, 32 or 64.
     pub shared_lanes: Option<u32>,
@@ -164,8 +166,8 @@ impl Capabilities {
         let side = side.min(limits.max_viewport_dimensions[0]).min(limits.max_viewport_dimensions[1]);
         let enabled = mask.leave(enabled);
         // SAFETY: by the caller.
-        let (subgroup_size, controlled) =
-            unsafe { subgroup_size(instance, physical, enabled.subgroup_size_control) };
+        let subgroups = unsafe { Subgroups::query(instance, physical, enabled.subgroup_size_control) };
+        let (subgroup_size, subgroup_size_control) = subgroups.size(mask.subgroup_size);
         let is_cpu = properties.device_type == vk::PhysicalDeviceType::CPU;
         // A subgroup of most GPUs, so that no lanes idle.
         let shared_lanes = if is_cpu { 8 } else { 32 };
@@ -180,8 +182,8 @@ impl Capabilities {
             timestamps: timestamps
                 .then_some((limits.timestamp_period, u64::MAX >> (64 - valid_bits.clamp(1, 64)))),
             limited_loops: mask.limited_loops.unwrap_or(is_cpu),
-            subgroup_size: subgroup_size.min(mask.subgroup_size.unwrap_or(u32::MAX)),
-            subgroup_size_control: controlled && mask.subgroup_size.is_none_or(|most| subgroup_size <= most),
+            subgroup_size,
+            subgroup_size_control,
             shared_lanes: mask
                 .shared_lanes
                 .map_or(shared_lanes, |lanes| lanes.next_power_of_two().clamp(8, 64)),
@@ -201,42 +203,5 @@ impl Capabilities {
             max_workgroups: limits.max_compute_work_group_count[0],
             memory: memory.min(mask.memory.unwrap_or(u64::MAX)),
         }
-    }
-}
-
-/// Subgroup size in a range of sizes that a pipeline requires: a tile of 8 × 8 px has two pixels a lane.
-const REQUIRED_SUBGROUP: u32 = 32;
-
-/// The size of subgroups of compute shaders that can shuffle, and whether pipelines can require it; 0 if they cannot, or are not all of one size
-/// and `controlled` is false.
-///
-/// # Safety
-/// `physical` is one of the instance's devices, and of version 1.1 at least.
-unsafe fn subgroup_size(
-    instance: &ash::Instance,
-    physical: vk::PhysicalDevice,
-    controlled: bool,
-) -> (u32, bool) {
-    // SAFETY: by the caller.
-    let extensions = unsafe { instance.enumerate_device_extension_properties(physical) }.unwrap_or_default();
-    let varies = extensions
-        .iter()
-        .any(|found| found.extension_name_as_c_str() == Ok(ash::ext::subgroup_size_control::NAME));
-    let mut subgroups = vk::PhysicalDeviceSubgroupProperties::default();
-    let mut sizes = vk::PhysicalDeviceSubgroupSizeControlProperties::default();
-    let mut query = vk::PhysicalDeviceProperties2::default().push_next(&mut subgroups);
-    if varies {
-        query = query.push_next(&mut sizes);
-    }
-    // SAFETY: by the caller; each struct is of Vulkan 1.1 or of an extension that the device has.
-    unsafe { instance.get_physical_device_properties2(physical, &mut query) };
-    let shuffles = subgroups.supported_operations.contains(vk::SubgroupFeatureFlags::SHUFFLE)
-        && subgroups.supported_stages.contains(vk::ShaderStageFlags::COMPUTE);
-    let range = [sizes.min_subgroup_size, sizes.max_subgroup_size];
-    let required = controlled && sizes.required_subgroup_size_stages.contains(vk::ShaderStageFlags::COMPUTE);
-    match (shuffles, varies && range[0] < range[1]) {
-        (true, false) => (subgroups.subgroup_size, required),
-        (true, true) if required => (REQUIRED_SUBGROUP.max(range[0]).min(range[1]), true),
-        _ => (0, false),
     }
 }

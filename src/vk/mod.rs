@@ -47,6 +47,7 @@ mod shader_stage;
 pub(crate) mod shaders;
 #[cfg(feature = "window")]
 mod slot;
+mod subgroups;
 #[cfg(feature = "window")]
 mod surface;
 #[cfg(feature = "window")]
