@@ -69,7 +69,7 @@ impl Swapchain {
             .image_extent(extent)
             .image_array_layers(1)
             .image_usage(USAGE)
-            .pre_transform(can.current_transform)
+            .pre_transform(transform(&can))
             .composite_alpha(composite_alpha(&can))
             .present_mode(mode)
             .clipped(true)
@@ -193,6 +193,12 @@ fn composite_alpha(can: &vk::SurfaceCapabilitiesKHR) -> vk::CompositeAlphaFlagsK
     kinds.into_iter().find(supported).unwrap_or(Alpha::OPAQUE)
 }
 
+/// Transform of the images relative to the display: none, where the presentation engine can rotate them itself.
+fn transform(can: &vk::SurfaceCapabilitiesKHR) -> vk::SurfaceTransformFlagsKHR {
+    let identity = vk::SurfaceTransformFlagsKHR::IDENTITY;
+    if can.supported_transforms.contains(identity) { identity } else { can.current_transform }
+}
+
 impl Drop for Swapchain {
     fn drop(&mut self) {
         // SAFETY: the presenter has waited for the device. Null handles are ignored.
@@ -204,5 +210,25 @@ impl Drop for Swapchain {
             }
             self.loader.destroy_swapchain(self.raw, None);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn images_are_not_rotated_where_the_display_can_do_that() {
+        use vk::SurfaceTransformFlagsKHR as Transform;
+        let of = |supported_transforms, current_transform| {
+            transform(&vk::SurfaceCapabilitiesKHR {
+                supported_transforms,
+                current_transform,
+                ..Default::default()
+            })
+        };
+        let rotated = Transform::ROTATE_90;
+        assert_eq!(of(Transform::IDENTITY | rotated, rotated), Transform::IDENTITY);
+        assert_eq!(of(rotated, rotated), rotated);
     }
 }
