@@ -84,15 +84,15 @@ bool is_hidden(float key, Tiles tiles) {
     return true;
 }
 
-// Marks the tiles that splats with at most this κ may change. Invocations that mark the same tile store the same.
+// Marks the tiles that splats with at most this κ may change; several invocations may mark the same tile.
 void reveal(float key, Tiles tiles) {
     if (!is_testable(key, tiles)) {
-        revealed.all = 1;
+        atomicOr(revealed.all, 1);
         return;
     }
     for (uint k = 0; k < count_of(tiles); k++) {
         uint tile = tile_of(tiles, k);
-        if (may_change(key, tile)) revealed.tiles[tile].key = MARKED;
+        if (may_change(key, tile)) atomicOr(revealed.tiles[tile].key, MARKED);
     }
 }
 

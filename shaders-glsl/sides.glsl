@@ -37,7 +37,7 @@ layout(constant_id = 71) const bool OPENS_TILES = false;
 // Most tiles of a splat that opens those alone; larger ones open all.
 const uint MOST_OPENED = 4096;
 
-// Opens the tiles that a splat may change. Invocations that open the same tile store the same.
+// Opens the tiles that a splat may change; several invocations may open the same tile.
 void open_tiles_of(Box box) {
     // Splats at a border whose fragments all lie outside the picture are drawn, and change no tile.
     if (is_empty(box)) return;
@@ -45,13 +45,14 @@ void open_tiles_of(Box box) {
     uvec4 bounds = corners(box) / TILE;
     uvec2 low = min(bounds.xy, last_tile), high = min(bounds.zw, last_tile), size = high - low + 1;
     if (size.x * size.y > MOST_OPENED) {
-        open.all = 1;
+        atomicOr(open.all, 1);
         return;
     }
     for (uint k = 0; k < size.x * size.y; k++) {
         uvec2 tile = low + uvec2(k % size.x, k / size.x);
         uint i = tile_index(tile);
-        if (nearest_key(box) > uintBitsToFloat(open.tiles[i].key)) open.tiles[i].key = MARKED;
+        uint key = atomicOr(open.tiles[i].key, 0);
+        if (nearest_key(box) > uintBitsToFloat(key)) atomicOr(open.tiles[i].key, MARKED);
     }
 }
 
