@@ -1,5 +1,9 @@
 // Workgroups of tile passes: LANES invocations that own a tile and exchange values. They are one subgroup (SUBGROUPS), or use shared memory
 // and barriers.
+//
+// SUBGROUPS: invocations that have diverged at a branch in uniform control flow are assumed to reconverge after it, so that all of them take part
+// in the next shuffle. Vulkan guarantees this with VK_KHR_shader_subgroup_uniform_control_flow only, which is not required: the drivers that
+// lack it reconverge at the end of a branch, too. All branches and loops around shuffles are uniform in the workgroup.
 
 layout(local_size_x_id = 44) in;
 
