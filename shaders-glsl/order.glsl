@@ -1,8 +1,9 @@
 // Order: sorts the surfels of a chunk along a Morton curve through the scene's bounds, by DIGIT_BITS bits of the code at a time, the lowest
-// first. The entries are divided into runs, one per invocation. A run counts its digits; the prefix sums over digits and runs (SCAN) are
-// the positions to which a run moves its entries (SCATTER). The sort is stable and has no atomics: every frame has the same order. Runs are
-// few and long, for the threads of a CPU device: on GPUs the sort is not fast.
+// first. The entries are divided into runs, one per invocation. A run counts its digits; the prefix sums over digits and runs (TOTALS, SCAN) are
+// the positions to which a run moves its entries (SCATTER). The sort is stable and has no atomics: every frame has the same order, whatever
+// the number of runs. CPU devices have few and long ones, GPUs many.
 #version 450
+#pragma variant TOTALS
 #pragma variant SCAN
 #pragma variant SCATTER
 #extension GL_GOOGLE_include_directive : require
@@ -16,7 +17,8 @@
 
 layout(local_size_x = 64) in;
 
-// A step of the sort. The buffer has two arrays of indices, two of codes, with `capacity` entries each, and then a counter per digit and run.
+// A step of the sort. The buffer has two arrays of indices, two of codes, with `capacity` entries each, then a counter per digit and run, and
+// the sum of each digit's counters.
 layout(push_constant) uniform OrderStep {
     vec4 curve;    // least corner of the scene's bounds; cells of the curve per unit of length
     uint count;    // surfels
@@ -71,25 +73,44 @@ uint digit_of(uint code) {
     return code >> DIGIT_BITS * pass.digit & DIGITS - 1;
 }
 
-#ifdef SCAN
+#if defined(TOTALS) || defined(SCAN)
 
 shared uint sums[gl_WorkGroupSize.x];
 
-// One workgroup replaces the counters by the sums of those before them.
-void main() {
-    uint lane = gl_LocalInvocationIndex, counters = DIGITS * pass.runs / gl_WorkGroupSize.x;
-    uint first = counter(0, 0) + lane * counters;
-    uint sum = 0;
-    for (uint k = 0; k < counters; k++) sum += order[first + k];
-    sums[lane] = sum;
+// Sum of the values of the workgroup's invocations; of those before this one, in `before`.
+uint workgroup_sum(uint value, out uint before) {
+    uint lane = gl_LocalInvocationIndex, sum = 0;
     barrier();
-    uint before = 0;
-    for (uint k = 0; k < gl_WorkGroupSize.x; k++) before += k < lane ? sums[k] : 0;
-    for (uint k = 0; k < counters; k++) {
-        uint count = order[first + k];
-        order[first + k] = before;
+    sums[lane] = value;
+    barrier();
+    before = 0;
+    for (uint k = 0; k < gl_WorkGroupSize.x; k++) {
+        before += k < lane ? sums[k] : 0;
+        sum += sums[k];
+    }
+    return sum;
+}
+
+// A workgroup per digit. TOTALS adds up the digit's counters; then SCAN replaces them by the sums of those before them.
+void main() {
+    uint digit = gl_WorkGroupID.x, lane = gl_LocalInvocationIndex, totals = counter(DIGITS, 0);
+    uint length = (pass.runs + gl_WorkGroupSize.x - 1) / gl_WorkGroupSize.x;
+    uint first = min(lane * length, pass.runs), end = min(first + length, pass.runs);
+    uint sum = 0, before;
+    for (uint run = first; run < end; run++) sum += order[counter(digit, run)];
+    uint total = workgroup_sum(sum, before);
+#ifdef TOTALS
+    if (lane == 0) order[totals + digit] = total;
+#else
+    uint of_lower = 0, unused;
+    for (uint lower = lane; lower < digit; lower += gl_WorkGroupSize.x) of_lower += order[totals + lower];
+    before += workgroup_sum(of_lower, unused);
+    for (uint run = first; run < end; run++) {
+        uint at = counter(digit, run), count = order[at];
+        order[at] = before;
         before += count;
     }
+#endif
 }
 
 #else

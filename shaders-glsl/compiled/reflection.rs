@@ -701,6 +701,16 @@ pub static ORDER_COMPUTE: Module = Module {
 };
 
 /// The compute stage of `shaders-glsl/order.glsl`.
+pub static ORDER_TOTALS_COMPUTE: Module = Module {
+    name: "order_totals_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("order_totals_compute.spv"),
+    constants: &[],
+    resources: &[(&resource::ORDER, true)],
+    push: size_of::<layout::OrderStep>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/order.glsl`.
 pub static ORDER_SCAN_COMPUTE: Module = Module {
     name: "order_scan_compute",
     stage: ShaderStageFlags::COMPUTE,

@@ -6,7 +6,7 @@ use super::splat_buffers::ALIGNMENT;
 use crate::error::Result;
 use crate::scene::Scene;
 use crate::vk::shaders::layout::Splat;
-use crate::vk::{Binding, Buffer, Commands, Device};
+use crate::vk::{Binding, Buffer, Capabilities, Commands, Device};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ impl SurfelOrder {
     pub fn new(device: &Arc<Device>, scene: &Scene) -> Result<Self> {
         let chunks = scene.chunks().to_vec();
         let last = chunks.len().checked_sub(1);
-        let end = last.map_or(0, |last| range(&chunks, last).iter().sum());
+        let end = last.map_or(0, |last| range(&chunks, last, device.capabilities()).iter().sum());
         let buffer = Buffer::storage(device, "order", end.max(ALIGNMENT))?;
         Ok(Self { buffer, chunks, curve: [0.0; 4] })
     }
@@ -44,6 +44,11 @@ impl SurfelOrder {
         self.curve
     }
 
+    /// Capabilities of its device, on which the runs of its sort depend.
+    pub fn capabilities(&self) -> &Capabilities {
+        self.buffer.device().capabilities()
+    }
+
     /// Its buffer.
     pub fn buffer(&self) -> &Buffer {
         &self.buffer
@@ -51,7 +56,7 @@ impl SurfelOrder {
 
     /// Binding of a chunk's order.
     pub fn binding(&self, chunk: usize) -> Binding<'_> {
-        let [start, bytes] = range(&self.chunks, chunk);
+        let [start, bytes] = range(&self.chunks, chunk, self.capabilities());
         Binding::Storage(&self.buffer, start, bytes)
     }
 
@@ -66,7 +71,7 @@ impl SurfelOrder {
     pub fn by_surfel(&self, in_slots: &[Splat], words: &[u32]) -> Vec<Splat> {
         let mut list = in_slots.to_vec();
         for (index, chunk) in self.chunks.iter().enumerate() {
-            let first = range(&self.chunks, index)[0] as usize / 4;
+            let first = range(&self.chunks, index, self.capabilities())[0] as usize / 4;
             for slot in chunk.start..chunk.end.min(in_slots.len() as u64) {
                 let surfel = chunk.start + u64::from(words[first + (slot - chunk.start) as usize]);
                 list[surfel as usize] = in_slots[slot as usize];
@@ -77,8 +82,8 @@ impl SurfelOrder {
 }
 
 /// Start and size of a chunk's order, bytes.
-fn range(chunks: &[Range<u64>], index: usize) -> [u64; 2] {
-    let bytes = |chunk: &Range<u64>| order::bytes(chunk.end - chunk.start);
+fn range(chunks: &[Range<u64>], index: usize, capabilities: &Capabilities) -> [u64; 2] {
+    let bytes = |chunk: &Range<u64>| order::bytes(chunk.end - chunk.start, capabilities);
     let start = chunks[..index].iter().map(|chunk| bytes(chunk).next_multiple_of(ALIGNMENT)).sum();
     [start, bytes(&chunks[index])]
 }

@@ -38,6 +38,7 @@ mod tests {
             subgroup_size: 0,
             subgroup_size_control: false,
             shared_lanes: 8,
+            max_sort_runs: 256,
             max_texels: 65_536,
             max_storage_buffer_range: 1 << 20,
             storage_buffer_alignment: 64,

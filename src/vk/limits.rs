@@ -35,6 +35,8 @@ pub struct DeviceLimits {
     pub subgroup_size: Option<u32>,
     /// Invocations of a workgroup that passes values on by shared memory: 8, 16, 32 or 64.
     pub shared_lanes: Option<u32>,
+    /// Upper bound of the invocations that sort surfels in arbitrary order, from 8 to 16,384.
+    pub max_sort_runs: Option<u32>,
     /// Upper bound of `maxTexelBufferElements`.
     pub max_texels: Option<u64>,
     /// Upper bound of `maxStorageBufferRange`, bytes.
@@ -85,6 +87,8 @@ pub struct Capabilities {
     pub subgroup_size_control: bool,
     /// Invocations of a workgroup that passes values on by shared memory.
     pub shared_lanes: u32,
+    /// Most invocations that sort the surfels of a chunk in arbitrary order; each takes a KiB of counters.
+    pub max_sort_runs: u32,
     /// `maxTexelBufferElements`.
     pub max_texels: u64,
     /// `maxStorageBufferRange`, bytes.
@@ -109,6 +113,9 @@ pub struct Capabilities {
 
 /// Storage buffers of a shader stage that some frames need: a scene with all streams, with counts and coverage.
 pub(super) const STORAGE_BUFFERS: u32 = 15;
+
+/// Most runs of a sort: their counters take 16 MiB a chunk.
+const MOST_SORT_RUNS: u32 = 1 << 14;
 
 /// Largest width and height of a picture: a splat stores its anchor pixel in 15 bits per coordinate (`lib/splat.glsl`).
 const LARGEST_SIDE: u32 = 1 << 15;
@@ -187,6 +194,9 @@ impl Capabilities {
             shared_lanes: mask
                 .shared_lanes
                 .map_or(shared_lanes, |lanes| lanes.next_power_of_two().clamp(8, 64)),
+            max_sort_runs: mask
+                .max_sort_runs
+                .map_or(if is_cpu { 256 } else { MOST_SORT_RUNS }, |most| most.clamp(8, MOST_SORT_RUNS)),
             max_texels: u64::from(limits.max_texel_buffer_elements).min(mask.max_texels.unwrap_or(u64::MAX)),
             max_storage_buffer_range: u64::from(limits.max_storage_buffer_range)
                 .min(mask.max_storage_buffer_range.unwrap_or(u64::MAX)),

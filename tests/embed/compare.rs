@@ -11,6 +11,7 @@ pub const NARROW: DeviceLimits = DeviceLimits {
     max_storage_buffer_range: Some(512 << 10),
     blend_float32: None,
     subgroup_size: None,
+    max_sort_runs: None,
     max_texels: None,
     limited_loops: None,
     int64_atomics: None,

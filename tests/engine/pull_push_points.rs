@@ -28,6 +28,7 @@ const NO_ATOMICS: DeviceLimits = DeviceLimits {
     dynamic_rendering: None,
     timestamps: None,
     subgroup_size: None,
+    max_sort_runs: None,
     max_texels: None,
     limited_loops: None,
     max_storage_buffer_range: None,
