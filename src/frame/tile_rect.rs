@@ -50,8 +50,11 @@ pub struct Covered {
     pub tiles: TileRect,
 }
 
-/// The tiles that the splats of each slice of a frame may cover, by what each selected scene covers.
+/// The tiles that the splats of each slice of a frame may cover, by what each selected scene covers; none if the frame is not sliced.
 pub fn tiles_of_slices(layout: &ListLayout, selections: &[Selection]) -> Vec<TileRect> {
+    if selections.iter().all(|selection| selection.covered().is_empty()) {
+        return Vec::new();
+    }
     let mut slices = vec![TileRect::default(); layout.splats.div_ceil(SLICE) as usize];
     for ((start, room), selection) in layout.ranges.iter().zip(selections) {
         let mut first = start.splats;
