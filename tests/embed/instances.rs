@@ -195,7 +195,7 @@ fn lists_that_change_with_every_frame_leave_nothing() {
         let names = ["perspective-ewa", "pull-push", "sprites-unfiltered"];
         let settings = names.map(method);
         let mut under_way = UnderWay::new(2);
-        for number in 0..60 {
+        for number in 0..if_whole(60, 24) {
             under_way
                 .submit(&host, |cmd| {
                     // SAFETY: at most two frames are in flight, as declared.

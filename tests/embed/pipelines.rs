@@ -4,6 +4,7 @@ use crate::fixture::{SIZE, assert_silent, camera, open, sphere, surfels, upload}
 use crate::host::Host;
 use crate::host::frame::{Frame, Kind, Way};
 use crate::host::native::{self, Native};
+use crate::support::methods;
 use crate::{FLOATS, ONE};
 use ash::vk;
 use glam::DVec3;
@@ -91,7 +92,7 @@ fn a_frame_whose_pipelines_are_there_makes_none() {
     let scene = upload(&host, &device, &sphere(2_000));
     let options = Options { frames_in_flight: 1, ..Options::new(frame.target()) };
     let view = View::whole(camera(), SIZE);
-    for name in Method::ALL.map(|method| method.name) {
+    for name in methods().into_iter().map(|method| method.name) {
         let (first, next) = (settings("sprites-unfiltered"), settings(name));
         // SAFETY: the target is the frame's; all commands are waited for.
         unsafe {

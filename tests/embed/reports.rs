@@ -5,6 +5,7 @@ use crate::fixture::{Fixture, SIZE, assert_silent, open, sphere, surfels, upload
 use crate::host::Host;
 use crate::host::frame::{Kind, Way};
 use crate::host::native::{self, Native};
+use crate::support::if_whole;
 use crate::support::settings::splats_alone;
 use crate::{FLOATS, ONE};
 use glam::DVec3;
@@ -48,7 +49,9 @@ fn labels(report: &FrameReport) -> Vec<&str> {
 fn frames_that_are_over_tell_what_is_asked_for() {
     let Some(host) = open(|all| all) else { return };
     let both = Measured { times: true, counts: true };
-    for (settings, rasterizer) in frames() {
+    // The short run has each method once.
+    let some = if_whole(frames(), [1, 2, 4].map(|i| frames()[i].clone()).to_vec());
+    for (settings, rasterizer) in some {
         let settings = Settings { cull: Cull::Back, ..settings };
         let [own, uncounted] = [true, false].map(|count| reports(&settings, rasterizer, count));
         let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };

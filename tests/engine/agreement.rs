@@ -101,6 +101,7 @@ fn every_case_with_coverage() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn every_case_with_filtered_pixels() {
     let by = |(i, alpha): (usize, Alpha)| {
         // The splats are those of other tests.

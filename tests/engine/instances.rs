@@ -163,6 +163,7 @@ fn many_instances_share_descriptor_pools() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn a_placed_scene_matches_the_reference_of_transformed_surfels() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let (surfels, renderers) = (rich(3_000), Renderers::new(&device));

@@ -62,10 +62,12 @@ macro_rules! effects {
 
 effects! {
     a_disc_is_exact_at_its_rim_or_at_its_centre: "isocontours";
+    #[ignore = "takes long: tools/test --all"]
     footprints_that_are_right_at_their_centre_alone_leave_holes: "perspective-holes";
     #[ignore = "takes long: tools/test --all"]
     without_a_low_pass_filter_a_checkerboard_is_aliased: "moire-screen";
     discs_that_end_at_sharp_edges_keep_them_sharp: "clip-lines";
+    #[ignore = "takes long: tools/test --all"]
     an_offset_along_the_axis_hides_too_much: "axis-offset";
     #[ignore = "takes long: tools/test --all"]
     without_normalization_brightness_varies: "no-normalization";
@@ -73,17 +75,23 @@ effects! {
     weights_of_surfels_are_comparable_on_a_checkerboard: "moire-object";
     #[ignore = "takes long: tools/test --all"]
     weights_of_surfels_fail_where_samples_are_irregular: "irregular";
+    #[ignore = "takes long: tools/test --all"]
     squares_thicken_contours: "thickening";
     #[ignore = "takes long: tools/test --all"]
     blending_smooths_a_texture: "filtering";
+    #[ignore = "takes long: tools/test --all"]
     sprites_at_their_centres_depth_blend_wrongly: "depth-correction";
     #[ignore = "takes long: tools/test --all"]
     wide_kernels_blur: "kernel-blur";
+    #[ignore = "takes long: tools/test --all"]
     narrow_kernels_show_facets: "kernel-facets";
     #[ignore = "takes long: tools/test --all"]
     filters_add_to_the_overlap: "overlap";
+    #[ignore = "takes long: tools/test --all"]
     box_weights_show_facets: "box-weights";
+    #[ignore = "takes long: tools/test --all"]
     light_at_every_pixel_keeps_highlights_sharp: "deferred-shading";
+    #[ignore = "takes long: tools/test --all"]
     a_ribbon_is_narrower_where_it_turns: "ribbon-width";
     #[ignore = "takes long: tools/test --all"]
     lines_are_thicker_than_triangles: "thin-lines";

@@ -367,6 +367,7 @@ fn bumpy(points: u32) -> Surfels {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn few_points() {
     assert_passes(
         [("10 k", bumpy(10_000), Shading::Lit)],
@@ -446,7 +447,8 @@ fn compact_samples() {
         ("no colours", Surfels { colours: None, ..bumpy(10_000) }.into(), Shading::Lit),
         ("100 k", bumpy(100_000).into(), Shading::Colour),
     ];
-    let some = list.into_iter().take(if_whole(4, 2));
+    // The short run has points without colours in full precision, and lines, triangles and points here.
+    let some = list.into_iter().skip(if_whole(0, 1)).take(if_whole(4, 1));
     assert_passes(some, if_whole(&SIZES[1..3], &SHORT_SIZES[2..]), Precision::Half);
 }
 

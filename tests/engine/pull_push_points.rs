@@ -129,7 +129,7 @@ fn cameras(size: [u32; 2]) -> [Camera; 2] {
 fn drawn_points_are_computed_ones_bit_for_bit_and_as_many() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     for (i, case) in cases().iter().enumerate() {
-        for (_, case) in frame_cases(case).enumerate().filter(|(j, _)| if_whole(true, (i + j) % 6 == 0)) {
+        for (_, case) in frame_cases(case).enumerate().filter(|(j, _)| if_whole(true, (i + j) % 12 == 0)) {
             let made = case.is_one(&device);
             let reference = Reconstruction::new(
                 &case.camera,

@@ -146,7 +146,8 @@ fn an_open_bowl_is_whole_from_above() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     for method in [perspective_ewa::METHOD, pull_push::METHOD] {
         let (how, name) = ((&method, Rasterizer::Compute), method.name);
-        for (points, side) in [(3_000, 256), (100_000, 256), (100_000, 64)] {
+        let all = [(3_000, 256), (100_000, 64), (100_000, 256)];
+        for &(points, side) in &all[..if_whole(3, 2)] {
             for eye in [DVec3::new(0.4, 1.6, 2.8), DVec3::new(0.3, 2.8, 1.2)] {
                 let [none, auto] =
                     pictures(&device, (&bowl(points), side), eye, how, [Cull::None, Cull::Auto]);
