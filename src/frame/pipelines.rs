@@ -1,4 +1,4 @@
-//! Pipelines of passes, created on first use of a variant and cached.
+//! Pipelines of passes, created on first use of a variant, several at a time, and cached.
 
 use super::methods::{Path, passes};
 use super::pass::{Commands, Pass, Program, Programs, Stages};
@@ -11,13 +11,14 @@ use crate::vk::{
     Code, ComputePipeline, Constants, DepthTest, Device, DrawPipeline, DrawState, RenderPass, SetLayout,
     Within,
 };
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
+use std::panic::resume_unwind;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Pipeline cache of a renderer.
 pub struct Pipelines {
-    frame_pipelines: HashMap<(usize, Variant), PassPipelines>,
-    scene_pipelines: HashMap<(usize, SceneVariant), PassPipelines>,
+    made: HashMap<Key, PassPipelines>,
     render_passes: HashMap<(usize, Variant), Arc<RenderPass>>,
     host: Option<Host>,
 }
@@ -48,15 +49,67 @@ fn key(pass: &'static Pass) -> usize {
     std::ptr::from_ref(pass).addr()
 }
 
+/// A request for pipelines of a pass.
+#[derive(Clone, Copy)]
+struct Request {
+    pass: &'static Pass,
+    over: Over,
+}
+
+/// What pipelines of a pass run over, with what they depend on.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Over {
+    Frame(Variant),
+    Scene(SceneVariant),
+}
+
+type Key = (usize, Over);
+
+impl Request {
+    /// Requests for all pipelines of a pass: one set for the frame, or one per scene.
+    fn of(pass: &'static Pass, variant: &Variant, scenes: &[SceneVariant]) -> Vec<Self> {
+        match pass.programs {
+            Programs::OfFrame(_) => vec![Self { pass, over: Over::Frame(*variant) }],
+            Programs::OfScene(_) => {
+                scenes.iter().map(|scene| Self { pass, over: Over::Scene(*scene) }).collect()
+            }
+        }
+    }
+
+    fn key(&self) -> Key {
+        (key(self.pass), self.over)
+    }
+}
+
+/// Stack of a thread that compiles, bytes: as much as drivers have on main threads.
+const STACK: usize = 8 << 20;
+
+/// The results of `make` for 0, 1, … below `count`, by as many threads as the CPU runs at once. They are no threads of a pool, which would do
+/// other work of the host while they wait for each other.
+fn in_parallel<T: Send>(count: usize, make: &(dyn Fn(usize) -> T + Sync)) -> Vec<T> {
+    let next = AtomicUsize::new(0);
+    let take = || {
+        let numbers = std::iter::repeat_with(|| next.fetch_add(1, Ordering::Relaxed));
+        numbers.take_while(|i| *i < count).map(|i| (i, make(i))).collect::<Vec<_>>()
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(count);
+    let mut made = std::thread::scope(|scope| {
+        let start = |_| std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, take).ok();
+        let others: Vec<_> = (1..threads).filter_map(start).collect();
+        let mut made = take();
+        for other in others {
+            made.extend(other.join().unwrap_or_else(|panic| resume_unwind(panic)));
+        }
+        made
+    });
+    made.sort_unstable_by_key(|(i, _)| *i);
+    made.into_iter().map(|(_, result)| result).collect()
+}
+
 impl Pipelines {
     /// An empty cache; with `host`, raster passes are drawn in its subpasses.
     pub fn new(host: Option<Host>) -> Self {
-        Self {
-            frame_pipelines: HashMap::new(),
-            scene_pipelines: HashMap::new(),
-            render_passes: HashMap::new(),
-            host,
-        }
+        Self { made: HashMap::new(), render_passes: HashMap::new(), host }
     }
 
     /// The passes of a frame of `variant` with so many scenes.
@@ -76,44 +129,37 @@ impl Pipelines {
         self.host.as_ref().is_some_and(|host| host.draws.iter().any(|draw| std::ptr::eq(draw.pass, pass)))
     }
 
-    /// The pipelines of a pass: one set for the frame, or one per scene.
-    pub fn for_pass(
+    /// The pipelines of each of the passes of a frame: one set for the frame, or one per scene. Missing ones are compiled in parallel.
+    pub fn for_passes(
         &mut self,
         device: &Arc<Device>,
-        pass: &'static Pass,
+        list: &[&'static Pass],
         variant: &Variant,
         scenes: &[SceneVariant],
-    ) -> Result<Vec<PassPipelines>> {
-        match pass.programs {
-            Programs::OfFrame(programs) => {
-                if let Some(pipelines) = self.frame_pipelines.get(&(key(pass), *variant)) {
-                    return Ok(vec![pipelines.clone()]);
-                }
-                let view = |_: &Program| variant.view_resources();
-                let pipelines =
-                    self.make(device, pass, programs(variant), variant, &variant.constants(), &view)?;
-                self.frame_pipelines.insert((key(pass), *variant), pipelines.clone());
-                Ok(vec![pipelines])
-            }
-            Programs::OfScene(programs) => {
-                let mut all = Vec::with_capacity(scenes.len());
-                for scene in scenes {
-                    let pipelines = match self.scene_pipelines.get(&(key(pass), *scene)) {
-                        Some(pipelines) => pipelines.clone(),
-                        None => {
-                            let resources = |program: &Program| scene.resources(program.domain.scope());
-                            let constants = scene.constants();
-                            let pipelines =
-                                self.make(device, pass, programs(scene), variant, &constants, &resources)?;
-                            self.scene_pipelines.insert((key(pass), *scene), pipelines.clone());
-                            pipelines
-                        }
-                    };
-                    all.push(pipelines);
-                }
-                Ok(all)
-            }
+    ) -> Result<Vec<Vec<PassPipelines>>> {
+        let requests: Vec<_> = list.iter().map(|pass| Request::of(pass, variant, scenes)).collect();
+        let missing = self.missing(requests.iter().flatten());
+        for request in &missing {
+            self.render_pass(device, request.pass, variant)?;
         }
+        let made = in_parallel(missing.len(), &|i| self.make(device, &missing[i], variant));
+        for (request, made) in missing.iter().zip(made) {
+            self.made.insert(request.key(), made?);
+        }
+        let pipelines = |request: &Request| self.made[&request.key()].clone();
+        Ok(requests.iter().map(|of_pass| of_pass.iter().map(pipelines).collect()).collect())
+    }
+
+    /// The requests for pipelines that do not exist yet, each once. Passes of one name share pipelines, which one thread would wait for while
+    /// another creates them: the first of each name comes first.
+    fn missing<'a>(&self, requests: impl Iterator<Item = &'a Request>) -> Vec<Request> {
+        let (mut keys, mut names) = (HashSet::new(), HashSet::new());
+        let missing = requests.filter(|request| !self.made.contains_key(&request.key()));
+        let (mut first, others): (Vec<_>, Vec<_>) = missing
+            .filter(|request| keys.insert(request.key()))
+            .partition(|request| names.insert(request.pass.name));
+        first.extend(others);
+        first
     }
 
     /// The render pass of a raster pass; `None` in subpasses of a host.
@@ -136,16 +182,19 @@ impl Pipelines {
         Ok(Some(render_pass))
     }
 
-    fn make(
-        &mut self,
-        device: &Arc<Device>,
-        pass: &'static Pass,
-        programs: Vec<Program>,
-        variant: &Variant,
-        constants: &Constants,
-        first_set: &dyn Fn(&Program) -> Vec<&'static shaders::Resource>,
-    ) -> Result<PassPipelines> {
-        let render_pass = self.render_pass(device, pass, variant)?;
+    /// Creates pipelines of a pass, whose render pass exists.
+    fn make(&self, device: &Arc<Device>, request: &Request, variant: &Variant) -> Result<PassPipelines> {
+        let (pass, over) = (request.pass, &request.over);
+        let (programs, constants) = match (&pass.programs, over) {
+            (Programs::OfScene(programs), Over::Scene(scene)) => (programs(scene), scene.constants()),
+            (Programs::OfFrame(programs), _) => (programs(variant), variant.constants()),
+            (Programs::OfScene(_), Over::Frame(_)) => return Ok(PassPipelines::default()),
+        };
+        let first_set = |program: &Program| match over {
+            Over::Frame(variant) => variant.view_resources(),
+            Over::Scene(scene) => scene.resources(program.domain.scope()),
+        };
+        let render_pass = self.render_passes.get(&(key(pass), *variant));
         let mut pipelines = Vec::with_capacity(programs.len());
         for program in programs {
             let layouts = self.layouts(device, pass, &program, variant, first_set(&program))?;
@@ -159,7 +208,7 @@ impl Pipelines {
                     &constants,
                     program.is_subgroup,
                 )?)],
-                Stages::Draw(modules) => match (&render_pass, &pass.commands) {
+                Stages::Draw(modules) => match (render_pass, &pass.commands) {
                     (Some(into), Commands::Draws(targets)) => {
                         let (topology, depth, blend) = (targets.topology, targets.test, targets.blend);
                         let state = DrawState { topology, depth, blend };
@@ -233,5 +282,26 @@ impl Pipelines {
             list
         };
         (0..count).map(|set| SetLayout::of(device, resources(set))).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_of_threads_are_in_order() {
+        assert!(in_parallel(0, &|i| i).is_empty());
+        let slow_at_first = |i: usize| {
+            std::thread::sleep(std::time::Duration::from_millis(20 - 2 * i as u64));
+            10 * i
+        };
+        assert_eq!(in_parallel(9, &slow_at_first), [0, 10, 20, 30, 40, 50, 60, 70, 80]);
+    }
+
+    #[test]
+    #[should_panic(expected = "of 3")]
+    fn a_panic_is_that_of_the_thread() {
+        in_parallel(8, &|i| assert_ne!(i, 3, "of {i}"));
     }
 }

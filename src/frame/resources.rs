@@ -238,9 +238,8 @@ impl FrameResources {
     /// Creates the pipelines of a frame, and of others that differ by camera, size and density only. Creates no other resources.
     pub fn make_pipelines(&mut self, frame: &Description) -> Result<()> {
         for (variant, scenes) in frame.choices() {
-            for pass in self.pipelines.passes(&variant, scenes.len()) {
-                self.pipelines.for_pass(&self.device, pass, &variant, &scenes)?;
-            }
+            let list = self.pipelines.passes(&variant, scenes.len());
+            self.pipelines.for_passes(&self.device, &list, &variant, &scenes)?;
         }
         Ok(())
     }
@@ -482,8 +481,7 @@ impl FrameResources {
             .filter(|_| !same)
             .map(|pass| prepared(device, pass, pipelines, current, &all_bindings));
         let created_passes = created_passes.collect::<Result<Vec<_>>>()?;
-        let created = list.iter().map(|pass| pipelines.for_pass(device, pass, &current.variant, scenes));
-        let created = created.collect::<Result<Vec<_>>>()?;
+        let created = pipelines.for_passes(device, &list, &current.variant, scenes)?;
         if !same {
             self.disposal.add(Some(std::mem::replace(&mut current.passes, created_passes)));
         }

@@ -6,8 +6,8 @@ use super::pipeline::Raw;
 use super::set_layout::SetBinding;
 use super::shader_stage::ShaderStage;
 use ash::vk;
-use std::collections::HashMap;
-use std::sync::{Arc, Mutex, MutexGuard, Weak};
+use std::collections::{HashMap, HashSet};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, Weak};
 
 /// Everything that a pipeline is created from.
 #[derive(Clone, PartialEq, Eq, Hash)]
@@ -50,12 +50,18 @@ const MOST_UNUSED: usize = 256;
 /// Pipelines of a device. They are kept when their users are gone, since later ones would compile them again; those in passes of a host are
 /// not, since a handle of a pass may come back as another one.
 #[derive(Default)]
-pub(super) struct PipelinePool(Mutex<Pipelines>);
+pub(super) struct PipelinePool {
+    pipelines: Mutex<Pipelines>,
+    /// Wakes those who wait for a pipeline that another thread creates.
+    made: Condvar,
+}
 
 #[derive(Default)]
 struct Pipelines {
     kept: HashMap<PipelineKey, Kept>,
     of_hosts: HashMap<PipelineKey, Weak<Raw>>,
+    /// Those that some thread creates.
+    being_made: HashSet<PipelineKey>,
     /// Number of requests so far.
     requests: u64,
 }
@@ -73,28 +79,24 @@ impl PipelineKey {
 }
 
 impl PipelinePool {
-    /// Returns the pipeline of `key`, created by `make` on `device` if it does not exist.
+    /// Returns the pipeline of `key`, created by `make` on `device` if it does not exist. If another thread creates it, this one waits.
     pub(super) fn get<E>(
         &self,
         device: &ash::Device,
         key: PipelineKey,
         make: impl FnOnce(&PipelineKey) -> Result<Raw, E>,
     ) -> Result<Arc<Raw>, E> {
-        if let Some(known) = self.lock().find(&key) {
-            return Ok(known);
-        }
+        let _being_made = match self.find(&key) {
+            Ok(known) => return Ok(known),
+            Err(being_made) => being_made,
+        };
         // Without the lock: compilation is slow, and other threads may create other pipelines meanwhile.
         let mut made = make(&key)?;
         let mut pool = self.lock();
-        if let Some(known) = pool.find(&key) {
-            // Another thread created the same pipeline: this one is destroyed without the lock.
-            drop(pool);
-            return Ok(known);
-        }
         if key.is_of_host() {
             let made = Arc::new(made);
             pool.of_hosts.retain(|_, pipeline| pipeline.strong_count() > 0);
-            pool.of_hosts.insert(key, Arc::downgrade(&made));
+            pool.of_hosts.insert(key.clone(), Arc::downgrade(&made));
             return Ok(made);
         }
         // From now on the pool destroys it.
@@ -102,8 +104,22 @@ impl PipelinePool {
         let made = Arc::new(made);
         pool.destroy_unused(device, MOST_UNUSED);
         let last = pool.requests;
-        pool.kept.insert(key, Kept { pipeline: made.clone(), last });
+        pool.kept.insert(key.clone(), Kept { pipeline: made.clone(), last });
         Ok(made)
+    }
+
+    /// The pipeline of `key`; an error if there is none, and the caller is the one who creates it.
+    fn find<'a>(&'a self, key: &'a PipelineKey) -> Result<Arc<Raw>, BeingMade<'a>> {
+        let mut pool = self.lock();
+        loop {
+            if let Some(known) = pool.find(key) {
+                return Ok(known);
+            }
+            if pool.being_made.insert(key.clone()) {
+                return Err(BeingMade { pool: self, key });
+            }
+            pool = self.made.wait(pool).unwrap_or_else(PoisonError::into_inner);
+        }
     }
 
     /// Destroys all pipelines that are kept.
@@ -118,7 +134,20 @@ impl PipelinePool {
     }
 
     fn lock(&self) -> MutexGuard<'_, Pipelines> {
-        lock(&self.0)
+        lock(&self.pipelines)
+    }
+}
+
+/// A pipeline that is created. When it is dropped, threads that wait find the pipeline, or create it themselves.
+struct BeingMade<'a> {
+    pool: &'a PipelinePool,
+    key: &'a PipelineKey,
+}
+
+impl Drop for BeingMade<'_> {
+    fn drop(&mut self) {
+        self.pool.lock().being_made.remove(self.key);
+        self.pool.made.notify_all();
     }
 }
 

@@ -5,7 +5,7 @@ use crate::support::placing::{rich, weighted};
 use crate::support::settings::splats_alone;
 use crate::support::{if_whole, methods};
 use glam::DVec3;
-use std::sync::Arc;
+use std::sync::{Arc, Barrier};
 use surfel::geometry::{Camera, Extent, Surfels, Weights};
 use surfel::settings::methods::Method;
 use surfel::settings::methods::object_ewa::{self, Progressive};
@@ -95,6 +95,33 @@ fn pipelines_are_created_once_per_variant() {
         assert_eq!(made, most, "{rasterizer:?}");
     }
     assert_silent(&device);
+}
+
+/// Number of pipelines that `renderers` make, each in its own thread, for the same frame.
+fn made_at_once(renderers: usize) -> Option<u64> {
+    let owner = new_device(DeviceLimits::default())?;
+    let device: &Arc<Device> = &owner;
+    let scene = Scene::upload(device, &sphere(2_000)).unwrap();
+    let settings = Method::named("perspective-ewa").unwrap().settings();
+    let (before, all) = (device.usage().pipelines, Barrier::new(renderers));
+    std::thread::scope(|scope| {
+        for _ in 0..renderers {
+            scope.spawn(|| {
+                let options = RenderOptions { size: [16; 2], ..Default::default() };
+                let mut renderer = Renderer::new(device, options).unwrap();
+                all.wait();
+                renderer.render(&scene, &camera([16; 2]), &settings).unwrap();
+            });
+        }
+    });
+    assert_silent(device);
+    Some(device.usage().pipelines - before)
+}
+
+#[test]
+fn threads_that_need_the_same_pipelines_make_them_once() {
+    let [one, three] = [1, 3].map(made_at_once);
+    assert!(one == three && one != Some(0), "{one:?}, {three:?} by three renderers");
 }
 
 #[test]
