@@ -1,7 +1,7 @@
-/* A Vulkan layer that simulates faults: it loses the first LOST_DEVICES devices, each after LOST_AFTER frames, and says of every
+/* A Vulkan layer that simulates faults: it loses the first LOST_DEVICES devices, each while there is a file LOST, and says of every
    STALE_EVERYth image that is acquired or presented that its swapchain is out of date, or suboptimal. With BLIND no device presents.
    While there is a file HIDDEN, windows have no extent, and while there is a file REFUSED, they get no swapchains, as one that has changed just
-   now; such a file grows by a byte each time. Works on one device at a time. */
+   now. Such files grow by a byte each time. Works on one device at a time. */
 
 #include <stdint.h>
 #include <stdio.h>
@@ -41,7 +41,7 @@ typedef struct Submit {
 
 static GetProc next_instance, next_device;
 static void *instance, *device;
-static int devices, frames, gone, images;
+static int devices, gone, images;
 
 static int number(const char *name) {
   const char *text = getenv(name);
@@ -78,7 +78,7 @@ static int32_t create_device(void *physical, const void *create, const void *all
   int32_t result = next(physical, create, allocator, made);
   device = *made;
   devices++;
-  frames = gone = 0;
+  gone = 0;
   return result;
 }
 
@@ -94,10 +94,21 @@ static int32_t queue_wait_idle(void *queue) {
   return gone ? ERROR_DEVICE_LOST : result;
 }
 
+/* Whether there is the file that a variable names, which then grows. */
+static int is_there(const char *variable) {
+  const char *path = getenv(variable);
+  FILE *file = path ? fopen(path, "r+") : NULL;
+  if (!file) return 0;
+  fseek(file, 0, SEEK_END);
+  fputc('.', file);
+  fclose(file);
+  return 1;
+}
+
 static int32_t submit(void *queue, uint32_t count, const Submit *what, uint64_t fence) {
   /* What signals a semaphore is a frame for the window. */
   int frame = count && what->signals;
-  if (frame && !gone && devices <= number("LOST_DEVICES") && ++frames > number("LOST_AFTER")) {
+  if (frame && !gone && devices <= number("LOST_DEVICES") && is_there("LOST")) {
     /* What is under way ends: a driver that has lost its device does not use anything any more. */
     queue_wait_idle(queue);
     gone = 1;
@@ -144,17 +155,6 @@ static int32_t presents(void *physical, uint32_t family, uint64_t surface, uint3
   int32_t result = next(physical, family, surface, does);
   if (number("BLIND")) *does = 0;
   return result;
-}
-
-/* Whether there is the file that a variable names, which then grows. */
-static int is_there(const char *variable) {
-  const char *path = getenv(variable);
-  FILE *file = path ? fopen(path, "r+") : NULL;
-  if (!file) return 0;
-  fseek(file, 0, SEEK_END);
-  fputc('.', file);
-  fclose(file);
-  return 1;
 }
 
 /* VkSurfaceCapabilitiesKHR begins with the least and the greatest number of images, and the present, least and greatest extent. */

@@ -45,20 +45,19 @@ pub fn faulty(
 }
 
 const SMALL: &str = "scene:bumpy-sphere?points=5000 --size 320x240";
-const LATER: (&str, &str) = ("LOST_AFTER", "6");
 
 #[test]
 fn a_lost_device_is_replaced_once() {
     let test = "a_lost_device_is_replaced_once";
     let Some((display, program)) = setup(test) else { return };
-    let Some(command) = faulty(test, &program, &display.name, SMALL, &[("LOST_DEVICES", "1"), LATER]) else {
-        return;
-    };
+    let path = program.path("LOST");
+    let faults = [("LOST_DEVICES", "1"), ("LOST", path.to_str().unwrap())];
+    let Some(command) = faulty(test, &program, &display.name, SMALL, &faults) else { return };
     let mut view = View::start(&display, command);
     let first = view.picture(|_| true);
     display.press(&[], u32::from('l'));
     let before = view.picture(|event| event["shading"] != first["shading"]);
-    lose(&mut view);
+    lose(&mut view, &path);
     let after = view.picture(|_| true);
     for what in ["method", "shading", "size"] {
         assert_eq!(after[what], before[what], "{what} as before the loss");
@@ -74,11 +73,11 @@ fn a_lost_device_is_replaced_once() {
 fn a_device_that_is_lost_again_ends_the_program() {
     let test = "a_device_that_is_lost_again_ends_the_program";
     let Some((display, program)) = setup(test) else { return };
-    let Some(command) = faulty(test, &program, &display.name, SMALL, &[("LOST_DEVICES", "9"), LATER]) else {
-        return;
-    };
+    let path = program.path("LOST");
+    let faults = [("LOST_DEVICES", "9"), ("LOST", path.to_str().unwrap())];
+    let Some(command) = faulty(test, &program, &display.name, SMALL, &faults) else { return };
     let mut view = View::start(&display, command);
-    lose(&mut view);
+    lose(&mut view, &path);
     // The second loss is not logged: it ends the program.
     for key in ["2", "3"].iter().cycle() {
         if view.ends() {
@@ -91,8 +90,9 @@ fn a_device_that_is_lost_again_ends_the_program() {
     assert!(code == 5 && last.contains("another device with --device"), "{code} {errors}");
 }
 
-/// Requests pictures until the device is lost.
-fn lose(view: &mut View) {
+/// Makes the file with which the device is lost, and requests pictures until it is.
+fn lose(view: &mut View, path: &Path) {
+    fs::write(path, "").unwrap();
     for key in ["2", "3"].iter().cycle() {
         view.display.type_text(key);
         if view.next(&["picture", "lost"], |_| true)["event"] == "lost" {
