@@ -37,6 +37,7 @@ mod materials;
 mod mesh_outlines;
 mod papers;
 mod parallel;
+mod pipelines;
 mod ply_edge;
 mod point_budget;
 mod point_octree;
