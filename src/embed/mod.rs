@@ -253,7 +253,8 @@ impl Renderer {
 
     /// Creates the pipelines of frames of these scenes and settings, whatever the camera and the size, so that no such frame stalls: for
     /// example while a level is loaded. Nothing is recorded, and the prepared picture stays. Takes as long as the driver needs to compile
-    /// shaders, on as many threads as the CPU runs at once. Another renderer on another thread can do this, too, and leave the pipelines in the device's pipeline cache.
+    /// shaders, on as many threads as the CPU runs at once. Another renderer on another thread can do this, too, and leave the pipelines in the
+    /// device's pipeline cache.
     ///
     /// [`Renderer::prepare`] creates missing pipelines, which takes as long. Frames need others for scenes with other streams or layouts,
     /// instances instead of one scene, a parallel instead of a perspective projection, other settings than numbers, another number of lights,

@@ -188,6 +188,7 @@ impl Pipelines {
         let (programs, constants) = match (&pass.programs, over) {
             (Programs::OfScene(programs), Over::Scene(scene)) => (programs(scene), scene.constants()),
             (Programs::OfFrame(programs), _) => (programs(variant), variant.constants()),
+            // `Request::of` makes no such pair.
             (Programs::OfScene(_), Over::Frame(_)) => return Ok(PassPipelines::default()),
         };
         let first_set = |program: &Program| match over {
