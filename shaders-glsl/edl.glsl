@@ -22,6 +22,7 @@ float rise_to(ivec2 pixel, ivec2 step, ivec2 size, float depth) {
     return (depth - near) / (width * length(vec2(step)));
 }
 
+// Where pixels are filtered later, the image of tiles without splats is undefined, here and after it.
 void main() {
     ivec2 pixel = invocation_pixel(), size = picture_size();
     if (any(greaterThanEqual(pixel, size))) return;

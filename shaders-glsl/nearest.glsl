@@ -37,6 +37,9 @@ layout(set = 1, binding = 5, std430) buffer Coverage { uint coverage[]; };
 #include "lib/tile_visibility.glsl"
 #include "lib/tile_coverage.glsl"
 #include "lib/attributes.glsl"
+#ifndef SLICES
+#include "lib/covered_tiles.glsl"
+#endif
 
 // Output of a pixel that shows splat `id` only.
 Pixel pixel_of(uvec2 coordinates, bool visible, uint id, float alpha) {
@@ -51,8 +54,10 @@ Pixel pixel_of(uvec2 coordinates, bool visible, uint id, float alpha) {
 
 void main() {
     load_frame();
+#ifndef SLICES
+    uvec2 origin = LISTED_ORIGIN(covered);
+#else
     uvec2 origin = tile_origin();
-#ifdef SLICES
     for (uint r = 0; r < ROWS; r++) {
         uvec2 coordinates = origin + lane_pixel(r);
         uint pixel = is_in_viewport(coordinates) ? pixel_index(ivec2(coordinates)) : 0;

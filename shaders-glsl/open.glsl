@@ -10,12 +10,16 @@
 #ifdef EDGES
 #include "lib/edge_tiles.glsl"
 #define LIST edges
-#elif defined(REVEALED)
+#else
+#define COVERED_ACCESS writeonly
+#include "lib/covered_tiles.glsl"
+#ifdef REVEALED
 #include "lib/revealed_tiles.glsl"
 #define LIST revealed
 #else
 #include "lib/open_tiles.glsl"
 #define LIST open
+#endif
 #endif
 
 layout(local_size_x = 64) in;
@@ -30,8 +34,12 @@ void main() {
     }
     if (i >= all_tiles || LIST.all == 0 && LIST.tiles[i].key != MARKED) return;
     uint place = atomicAdd(LIST.listed_count, 1);
-    atomicMax(LIST.columns, place / rows + 1);
+    atomicMax(LIST.columns, columns_of(place + 1, rows));
     LIST.tiles[place].listed = i % counts.x | i / counts.x << 16;
+#ifndef EDGES
+    // The splats that were drawn before may have left it empty.
+    covered.tiles[i].key = MARKED;
+#endif
 }
 
 #endif

@@ -18,6 +18,7 @@
 #include "lib/tile_visibility.glsl"
 #include "lib/tile_coverage.glsl"
 #include "lib/tile_attribute.glsl"
+#include "lib/covered_tiles.glsl"
 #include "lib/open_tiles.glsl"
 #include "lib/edge_tiles.glsl"
 #include "lib/revealed_tiles.glsl"
@@ -60,7 +61,7 @@ void store_key(uvec2 origin) {
 // First pixel of the workgroup's tile.
 uvec2 origin_of_workgroup() {
     if (has_fronts()) return LISTED_ORIGIN(open);
-    return is_of_revealed() ? LISTED_ORIGIN(revealed) : tile_origin();
+    return is_of_revealed() ? LISTED_ORIGIN(revealed) : LISTED_ORIGIN(covered);
 }
 
 void main() {

@@ -290,6 +290,26 @@ pub static COPY_COMPUTE: Module = Module {
     push: size_of::<layout::Step>() as u32,
 };
 
+/// The compute stage of `shaders-glsl/covered.glsl`.
+pub static COVERED_COMPUTE: Module = Module {
+    name: "covered_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("covered_compute.spv"),
+    constants: &[],
+    resources: &[(&resource::FRAME, false), (&resource::BOXES, false), (&resource::COVERED_TILES, true)],
+    push: size_of::<layout::Hierarchy>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/covered.glsl`.
+pub static COVERED_SUBGROUPS_COMPUTE: Module = Module {
+    name: "covered_subgroups_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("covered_subgroups_compute.spv"),
+    constants: &[],
+    resources: &[(&resource::FRAME, false), (&resource::BOX_TEXELS, false), (&resource::COVERED_TILES, true)],
+    push: size_of::<layout::Hierarchy>() as u32,
+};
+
 /// The compute stage of `shaders-glsl/cull.glsl`.
 pub static CULL_COMPUTE: Module = Module {
     name: "cull_compute",
@@ -440,6 +460,16 @@ pub static FILTER_COMPUTE: Module = Module {
     push: 0,
 };
 
+/// The compute stage of `shaders-glsl/filter.glsl`.
+pub static FILTER_COVERED_COMPUTE: Module = Module {
+    name: "filter_covered_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("filter_covered_compute.spv"),
+    constants: &[31, 66],
+    resources: &[(&resource::FRAME, false), (&resource::IMAGE_OUTPUT, false), (&resource::FILTERED, true), (&resource::COVERED_TILES, false)],
+    push: 0,
+};
+
 /// The compute stage of `shaders-glsl/footprint.glsl`.
 pub static FOOTPRINT_COMPUTE: Module = Module {
     name: "footprint_compute",
@@ -496,7 +526,7 @@ pub static NEAREST_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_compute.spv"),
     constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 67, 70, 72, 76, 79, 82],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::COVERED_TILES, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
 
@@ -546,7 +576,7 @@ pub static NEAREST_SUBGROUPS_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_subgroups_compute.spv"),
     constants: &[0, 3, 4, 6, 7, 9, 10, 15, 16, 17, 18, 20, 23, 24, 31, 44, 45, 47, 67, 70, 72, 76, 79, 82],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false), (&resource::COVERED_TILES, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
 
@@ -666,7 +696,7 @@ pub static OPEN_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("open_compute.spv"),
     constants: &[],
-    resources: &[(&resource::FRAME, false), (&resource::OPEN_TILES, true)],
+    resources: &[(&resource::FRAME, false), (&resource::OPEN_TILES, true), (&resource::COVERED_TILES, true)],
     push: 0,
 };
 
@@ -686,7 +716,7 @@ pub static OPEN_REVEALED_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("open_revealed_compute.spv"),
     constants: &[],
-    resources: &[(&resource::FRAME, false), (&resource::REVEALED_TILES, true)],
+    resources: &[(&resource::FRAME, false), (&resource::REVEALED_TILES, true), (&resource::COVERED_TILES, true)],
     push: 0,
 };
 
@@ -926,7 +956,7 @@ pub static SURFACE_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_compute.spv"),
     constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 67, 68, 70, 72, 76, 79, 80, 82],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::OPEN_TILES, true), (&resource::EDGE_TILES, true), (&resource::REVEALED_TILES, true)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::OPEN_TILES, true), (&resource::EDGE_TILES, true), (&resource::REVEALED_TILES, true), (&resource::COVERED_TILES, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
 
@@ -936,7 +966,7 @@ pub static SURFACE_SUBGROUPS_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_subgroups_compute.spv"),
     constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 67, 68, 70, 72, 76, 79, 80, 82],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false), (&resource::OPEN_TILES, true), (&resource::EDGE_TILES, true), (&resource::REVEALED_TILES, true)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false), (&resource::OPEN_TILES, true), (&resource::EDGE_TILES, true), (&resource::REVEALED_TILES, true), (&resource::COVERED_TILES, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
 
@@ -1249,6 +1279,15 @@ pub mod resource {
         binding: 5,
         kind: DescriptorType::STORAGE_BUFFER,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
+    /// `CoveredTiles`, first in `shaders-glsl/covered.glsl`.
+    pub static COVERED_TILES: Resource = Resource {
+        name: "CoveredTiles",
+        set: 1,
+        binding: 29,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
     /// `EdgeTiles`, first in `shaders-glsl/behind.glsl`.
@@ -2099,6 +2138,28 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Counts, culled) == 0);
     const _: () = assert!(std::mem::offset_of!(Counts, in_clusters) == 28);
     const _: () = assert!(std::mem::size_of::<Counts>() == 32);
+
+    /// `CoveredTiles`, 20 bytes, first in `shaders-glsl/covered.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct CoveredTiles {
+        /// Byte 0.
+        pub columns: u32,
+        /// Byte 4.
+        pub rows: u32,
+        /// Byte 8.
+        pub layers: u32,
+        /// Byte 12.
+        pub listed_count: u32,
+        /// Byte 16.
+        pub all: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(CoveredTiles, columns) == 0);
+    const _: () = assert!(std::mem::offset_of!(CoveredTiles, rows) == 4);
+    const _: () = assert!(std::mem::offset_of!(CoveredTiles, layers) == 8);
+    const _: () = assert!(std::mem::offset_of!(CoveredTiles, listed_count) == 12);
+    const _: () = assert!(std::mem::offset_of!(CoveredTiles, all) == 16);
+    const _: () = assert!(std::mem::size_of::<CoveredTiles>() == 20);
 
     /// `Darken`, 8 bytes, first in `shaders-glsl/darken.glsl`.
     #[repr(C)]

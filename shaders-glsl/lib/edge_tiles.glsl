@@ -2,4 +2,4 @@
 
 #include "lib/tile_list.glsl"
 
-TILE_LIST(EdgeTiles, edges, 25)
+TILE_LIST(buffer EdgeTiles, edges, 25)

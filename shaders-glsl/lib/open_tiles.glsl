@@ -3,4 +3,4 @@
 
 #include "lib/tile_list.glsl"
 
-TILE_LIST(OpenTiles, open, 24)
+TILE_LIST(buffer OpenTiles, open, 24)

@@ -2,4 +2,4 @@
 
 #include "lib/tile_list.glsl"
 
-TILE_LIST(RevealedTiles, revealed, 28)
+TILE_LIST(buffer RevealedTiles, revealed, 28)

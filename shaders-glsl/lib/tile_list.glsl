@@ -1,4 +1,4 @@
-// Lists of tiles for indirect dispatches of a workgroup per tile: pass open lists the marked ones.
+// Lists of tiles for indirect dispatches of a workgroup per tile: pass open lists the marked ones, pass covered those that splats may cover.
 
 #ifndef LIB_TILE_LIST
 #define LIB_TILE_LIST
@@ -7,12 +7,12 @@
 
 struct ListedTile {
     uint key;    // of each tile, row by row: MARKED, or below
-    uint listed; // the marked tiles, in any order: x in the lower 16 bits, y in the upper ones
+    uint listed; // the listed tiles, in any order: x in the lower 16 bits, y in the upper ones
 };
 
-// A list, after the workgroups of an indirect dispatch of one per listed tile, column by column.
-#define TILE_LIST(BLOCK, NAME, BINDING)                          \
-    layout(set = 1, binding = BINDING, std430) buffer BLOCK {    \
+// A list, after the workgroups of an indirect dispatch of one per listed tile.
+#define TILE_LIST(BUFFER, NAME, BINDING)                         \
+    layout(set = 1, binding = BINDING, std430) BUFFER {          \
         uint columns;                                            \
         uint rows;                                               \
         uint layers;                                             \
@@ -38,9 +38,19 @@ uint tile_index(uvec2 tile) {
     return tile.y * tile_counts().x + tile.x;
 }
 
-// Place of the workgroup in the list.
+// Listed tiles that successive workgroups draw; neighbours share cache lines.
+const uint RUN = 16;
+
+// Columns of the dispatch, in so many rows, over a list of this length.
+uint columns_of(uint count, uint rows) {
+    return ((count + rows - 1) / rows + RUN - 1) / RUN * RUN;
+}
+
+// Place of the workgroup in the list: even runs first, then odd ones, so that devices that split dispatches into halves balance the load.
 uint list_place() {
-    return gl_WorkGroupID.x * gl_NumWorkGroups.y + gl_WorkGroupID.y;
+    uint runs = gl_NumWorkGroups.x * gl_NumWorkGroups.y / RUN, half_way = (runs + 1) / 2;
+    uint i = gl_NumWorkGroups.x * gl_WorkGroupID.y + gl_WorkGroupID.x, run = i / RUN;
+    return RUN * (run < half_way ? 2 * run : 2 * (run - half_way) + 1) + i % RUN;
 }
 
 uvec2 origin_of(uint listed) {

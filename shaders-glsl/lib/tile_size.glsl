@@ -2,6 +2,6 @@
 #define LIB_TILE_SIZE
 
 // Side of a tile, px.
-const uint TILE = 8;
+const uint TILE_BITS = 3, TILE = 1u << TILE_BITS;
 
 #endif

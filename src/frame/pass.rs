@@ -137,8 +137,14 @@ pub enum Domain {
     FrontTiles,
     /// One invocation per tile.
     TileSlots,
+    /// One invocation per strip of tiles.
+    TileStrips,
     /// One workgroup per tile, with all splats in one dispatch.
     WholeTiles,
+    /// One workgroup per tile in the list of those that splats may cover.
+    CoveredTiles,
+    /// The same, for the splats that face the eye.
+    CoveredFrontTiles,
     /// One workgroup per tile in the list of open ones.
     OpenTiles,
     /// One workgroup per tile in the list of those with edges.
@@ -174,6 +180,7 @@ impl Domain {
     /// The list of tiles that it is.
     pub fn tile_list(self) -> Option<Resource> {
         match self {
+            Self::CoveredTiles | Self::CoveredFrontTiles => Some(Resource::CoveredTiles),
             Self::OpenTiles => Some(Resource::OpenTiles),
             Self::EdgeTiles => Some(Resource::EdgeTiles),
             Self::RevealedTiles => Some(Resource::RevealedTiles),
@@ -201,6 +208,9 @@ impl Domain {
             | Self::FrontTiles
             | Self::WholeTiles
             | Self::TileSlots
+            | Self::TileStrips
+            | Self::CoveredTiles
+            | Self::CoveredFrontTiles
             | Self::OpenTiles
             | Self::EdgeTiles
             | Self::RevealedTiles

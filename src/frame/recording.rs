@@ -4,6 +4,7 @@ use super::pass::{Commands, Domain, Pass, Programs, StepContext};
 use super::resource::Resource;
 use super::scene_resources::{InstanceRun, SceneResources};
 use super::splat_list::SplatList;
+use super::target_descriptions::is_cleared;
 use super::targets::RenderTargets;
 use super::tile_rect::TileRect;
 use super::variant::{SceneVariant, Variant};
@@ -45,6 +46,9 @@ pub fn grid_over_quads(size: [u32; 2]) -> [u32; 3] {
 /// Columns and rows of pixels of a workgroup of `filter.glsl`: of its invocations' blocks.
 const BLOCK_GROUP: [u32; 2] = [16 * 4, 4 * 16];
 
+/// Tiles of a row that an invocation of `covered.glsl` finds: STRIP.
+const TILE_STRIP: u32 = 16;
+
 /// Workgroups for an invocation per block of pixels.
 fn grid_over_blocks([width, height]: [u32; 2]) -> [u32; 3] {
     [width.div_ceil(BLOCK_GROUP[0]), height.div_ceil(BLOCK_GROUP[1]), 1]
@@ -81,6 +85,8 @@ pub struct Frame<'a> {
     pub tiles_of_slices: &'a [TileRect],
     /// See [`super::RenderOptions::most_splats`].
     pub most_splats: Option<u32>,
+    /// Colour of the background and its α: linear RGB.
+    pub background: [f32; 4],
     /// Number of the frame.
     pub number: u32,
     /// Instances in draw order: that of the frame.
@@ -127,7 +133,7 @@ impl PreparedPass {
                 let uses = frame.uses(&self.accesses);
                 let mut enc = rec.pass(self.pass.name, &uses);
                 for slice in 0..self.slices(frame) {
-                    if frame.tiles([slice, self.slices(frame)]).is_empty() {
+                    if self.slices(frame) > 1 && frame.tiles([slice, self.slices(frame)]).is_empty() {
                         continue;
                     }
                     if slice > 0 {
@@ -184,78 +190,104 @@ impl PreparedPass {
     fn dispatch(&self, enc: &mut Encoder<'_, '_>, frame: &Frame<'_>, slice: u32) {
         for (domain, pipeline, run) in self.each(&frame.batches) {
             let Pipeline::Compute(pipeline) = pipeline else { continue };
-            let pyramid = frame.pyramid_of(self.pass);
-            let sets_with = |first, third| -> Vec<&DescriptorSet> {
-                [Some(first), Some(&self.targets), third].into_iter().flatten().collect()
-            };
-            let Some(run) = run else {
-                let sets = sets_with(frame.view, pyramid);
-                match (domain, frame.splats) {
-                    (Domain::Tiles | Domain::FrontTiles, Some(splats)) => {
-                        let slices = [slice, self.slices(frame)];
-                        let tiles = frame.tiles(slices);
-                        let [columns, rows] = tiles.size();
-                        let fronts = if domain == Domain::FrontTiles { FRONTS } else { 0 };
-                        let hierarchy = splats.hierarchy(slices, frame.most_steps(), frame.number);
-                        let hierarchy = Hierarchy { fronts, first_tile: tiles.first, ..hierarchy };
-                        enc.dispatch(pipeline, &sets, &hierarchy, [columns, rows, 1]);
-                    }
-                    (Domain::WholeTiles, Some(splats)) => {
-                        let [columns, rows] = frame.targets.tiles();
-                        let hierarchy = splats.hierarchy([0, 1], frame.most_steps(), frame.number);
-                        enc.dispatch(pipeline, &sets, &hierarchy, [columns, rows, 1]);
-                    }
-                    (Domain::OpenTiles | Domain::EdgeTiles | Domain::RevealedTiles, Some(splats)) => {
-                        let Some(list) = domain.tile_list().and_then(|list| frame.targets.buffer(list))
-                        else {
-                            continue;
-                        };
-                        let hierarchy = splats.hierarchy([0, 1], frame.most_steps(), frame.number);
-                        let fronts = if domain == Domain::RevealedTiles { REVEALED_FRONTS } else { 0 };
-                        enc.dispatch_indirect(pipeline, &sets, &Hierarchy { fronts, ..hierarchy }, (list, 0));
-                    }
-                    (Domain::TileSlots, _) => {
-                        let [columns, rows] = frame.targets.tiles().map(u64::from);
-                        enc.dispatch(pipeline, &sets, &(), grid_over(columns * rows));
-                    }
-                    (Domain::Blocks, _) => {
-                        enc.dispatch(pipeline, &sets, &(), grid_over_blocks(frame.targets.size));
-                    }
-                    (Domain::Quads, _) => {
-                        enc.dispatch(pipeline, &sets, &(), grid_over_quads(frame.targets.size));
-                    }
-                    _ => enc.dispatch(pipeline, &sets, &(), grid_over_pixels(frame.targets.size)),
-                }
-                continue;
-            };
-            for mut chunk_run in run.chunks(domain.scope(), self.pass) {
-                let sets = sets_with(chunk_run.set, pyramid.or(chunk_run.counts));
-                if [Domain::VisibleClusters, Domain::RevealedClusters].contains(&domain) {
-                    let Some((list, start)) = chunk_run.visible else { continue };
-                    let revealed = u32::from(domain == Domain::RevealedClusters);
-                    let workgroups = (list, start + u64::from(revealed) * visible_clusters::COUNTS);
-                    let chunk = Chunk { revealed, ..chunk_run.chunk };
-                    enc.dispatch_indirect(pipeline, &sets, &chunk, workgroups);
-                    continue;
-                }
-                if domain == Domain::Clusters {
-                    let groups = grid_of(chunk_run.chunk.group_count);
-                    enc.dispatch(pipeline, &sets, &chunk_run.chunk, groups);
-                    continue;
-                }
-                if domain == Domain::SurfelSlots {
-                    chunk_run.instances = chunk_run.capacity;
-                }
-                let [x, y, _] = match domain {
-                    Domain::Surfels | Domain::Lines | Domain::Triangles => {
-                        row_over(chunk_run.chunk.count.into())
-                    }
-                    Domain::SurfelSlots => row_over(chunk_run.chunk.instance_stride.into()),
-                    Domain::LargeTriangles => [LARGE_WORKGROUPS.div_ceil(chunk_run.instances), 1, 1],
-                    _ => grid_over_pixels(frame.targets.size),
-                };
-                enc.dispatch(pipeline, &sets, &chunk_run.chunk, [x, y, chunk_run.instances]);
+            match run {
+                None => self.dispatch_of_frame(enc, frame, (domain, pipeline), slice),
+                Some(run) => self.dispatch_of_run(enc, frame, (domain, pipeline), run),
             }
+        }
+    }
+
+    /// Descriptor sets: the one of the frame or the scene, that of the pass, and a third one, if any.
+    fn sets<'a>(
+        &'a self,
+        first: &'a DescriptorSet,
+        third: Option<&'a DescriptorSet>,
+    ) -> Vec<&'a DescriptorSet> {
+        [Some(first), Some(&self.targets), third].into_iter().flatten().collect()
+    }
+
+    /// Records the dispatch of a program over pixels or tiles; over rectangles of tiles, of one slice.
+    fn dispatch_of_frame(
+        &self,
+        enc: &mut Encoder<'_, '_>,
+        frame: &Frame<'_>,
+        (domain, pipeline): (Domain, &ComputePipeline),
+        slice: u32,
+    ) {
+        let sets = self.sets(frame.view, frame.pyramid_of(self.pass));
+        let targets = frame.targets;
+        let [columns, rows] = targets.tiles();
+        if let Some(splats) = frame.splats {
+            let whole = splats.hierarchy([0, 1], frame.most_steps(), frame.number);
+            if let Some(list) = domain.tile_list() {
+                let Some(list) = targets.buffer(list) else { return };
+                let fronts = match domain {
+                    Domain::CoveredFrontTiles => FRONTS,
+                    Domain::RevealedTiles => REVEALED_FRONTS,
+                    _ => 0,
+                };
+                return enc.dispatch_indirect(pipeline, &sets, &Hierarchy { fronts, ..whole }, (list, 0));
+            }
+            match domain {
+                Domain::Tiles | Domain::FrontTiles => {
+                    let slices = [slice, self.slices(frame)];
+                    let tiles = frame.tiles(slices);
+                    let [columns, rows] = tiles.size();
+                    let fronts = if domain == Domain::FrontTiles { FRONTS } else { 0 };
+                    let hierarchy = splats.hierarchy(slices, frame.most_steps(), frame.number);
+                    let hierarchy = Hierarchy { fronts, first_tile: tiles.first, ..hierarchy };
+                    return enc.dispatch(pipeline, &sets, &hierarchy, [columns, rows, 1]);
+                }
+                Domain::WholeTiles => return enc.dispatch(pipeline, &sets, &whole, [columns, rows, 1]),
+                Domain::TileStrips => {
+                    let strips = u64::from(columns.div_ceil(TILE_STRIP)) * u64::from(rows);
+                    return enc.dispatch(pipeline, &sets, &whole, grid_over(strips));
+                }
+                _ => {}
+            }
+        }
+        let workgroups = match domain {
+            Domain::TileSlots => grid_over(u64::from(columns) * u64::from(rows)),
+            Domain::Blocks => grid_over_blocks(targets.size),
+            Domain::Quads => grid_over_quads(targets.size),
+            _ => grid_over_pixels(targets.size),
+        };
+        enc.dispatch(pipeline, &sets, &(), workgroups);
+    }
+
+    /// Records the dispatches of a program over a run of instances of a scene, one per chunk.
+    fn dispatch_of_run(
+        &self,
+        enc: &mut Encoder<'_, '_>,
+        frame: &Frame<'_>,
+        (domain, pipeline): (Domain, &ComputePipeline),
+        run: &InstanceRun<'_>,
+    ) {
+        for mut chunk_run in run.chunks(domain.scope(), self.pass) {
+            let sets = self.sets(chunk_run.set, frame.pyramid_of(self.pass).or(chunk_run.counts));
+            if [Domain::VisibleClusters, Domain::RevealedClusters].contains(&domain) {
+                let Some((list, start)) = chunk_run.visible else { continue };
+                let revealed = u32::from(domain == Domain::RevealedClusters);
+                let workgroups = (list, start + u64::from(revealed) * visible_clusters::COUNTS);
+                let chunk = Chunk { revealed, ..chunk_run.chunk };
+                enc.dispatch_indirect(pipeline, &sets, &chunk, workgroups);
+                continue;
+            }
+            if domain == Domain::Clusters {
+                let groups = grid_of(chunk_run.chunk.group_count);
+                enc.dispatch(pipeline, &sets, &chunk_run.chunk, groups);
+                continue;
+            }
+            if domain == Domain::SurfelSlots {
+                chunk_run.instances = chunk_run.capacity;
+            }
+            let [x, y, _] = match domain {
+                Domain::Surfels | Domain::Lines | Domain::Triangles => row_over(chunk_run.chunk.count.into()),
+                Domain::SurfelSlots => row_over(chunk_run.chunk.instance_stride.into()),
+                Domain::LargeTriangles => [LARGE_WORKGROUPS.div_ceil(chunk_run.instances), 1, 1],
+                _ => grid_over_pixels(frame.targets.size),
+            };
+            enc.dispatch(pipeline, &sets, &chunk_run.chunk, [x, y, chunk_run.instances]);
         }
     }
 
@@ -286,12 +318,13 @@ impl<'a> Frame<'a> {
         steps.clamp(1, i32::MAX as u64) as u32
     }
 
-    /// The tiles of a dispatch over tiles: all where it is the first slice, which initializes them, or the last one, which completes them;
-    /// otherwise those that its splats may cover.
+    /// The tiles of a dispatch over tiles: those that any splat may cover where it is the first slice, which initializes them, or the last one,
+    /// which completes them; otherwise those that its splats may cover.
     fn tiles(&self, [slice, slices]: [u32; 2]) -> TileRect {
         let is_between = slice > 0 && slice + 1 < slices;
         let of_slice = self.tiles_of_slices.get(slice as usize).filter(|_| is_between);
-        of_slice.copied().unwrap_or_else(|| TileRect::all(self.targets.size))
+        let of_all = || self.tiles_of_slices.iter().copied().reduce(TileRect::with);
+        of_slice.copied().or_else(of_all).unwrap_or_else(|| TileRect::all(self.targets.size))
     }
 
     /// The buffers and images of these resources that the frame has, with their accesses.
@@ -324,14 +357,15 @@ impl<'a> Frame<'a> {
 
     /// Clears the resources that the frame has.
     pub fn clear(&self, rec: &mut Recorder<'_>, resources: &[Resource]) {
-        let write: Vec<_> = resources.iter().map(|resource| (*resource, Access::COPY_WRITE)).collect();
+        let resources = resources.iter().filter(|resource| is_cleared(**resource, self.variant));
+        let write: Vec<_> = resources.clone().map(|resource| (*resource, Access::COPY_WRITE)).collect();
         let uses = self.uses(&write);
         if uses.is_empty() {
             return;
         }
         let mut enc = rec.pass("clear", &uses);
         for resource in resources {
-            self.targets.clear(&mut enc, *resource);
+            self.targets.clear(&mut enc, *resource, self.background);
             self.scenes_with(*resource).for_each(|scene| scene.clear(&mut enc, *resource));
         }
     }
@@ -405,7 +439,10 @@ impl Pass {
             let over = |list| programs.iter().any(|program| program.domain.tile_list() == Some(list));
             let indirect = match resource {
                 Resource::VisibleClusters => !write,
-                Resource::OpenTiles | Resource::EdgeTiles | Resource::RevealedTiles => over(resource),
+                Resource::CoveredTiles
+                | Resource::OpenTiles
+                | Resource::EdgeTiles
+                | Resource::RevealedTiles => over(resource),
                 _ => false,
             };
             (resource, if indirect { access.and_indirect() } else { access })

@@ -202,6 +202,15 @@ impl Renderer {
         pyramids.map(|pyramids| pyramids.read(self.frame.device())).transpose()
     }
 
+    /// Reads back the tiles of 8 × 8 px that the boxes of the last frame's splats overlap, column and row of each: all others were left empty,
+    /// unless splats that face away, or were hidden in the frame before, cover them. `None` if the frame has no list of them: on the raster
+    /// path, by pull–push, in slices, and if stages run separately ([`RenderOptions::split`]).
+    pub fn read_covered_tiles(&self) -> Result<Option<Vec<[u32; 2]>>> {
+        let current = self.frame.current();
+        let tiles = current.map(|current| current.targets.read_covered_tiles(self.frame.device()));
+        tiles.transpose().map(Option::flatten)
+    }
+
     /// Report of the completed frame.
     fn report(&mut self) -> Result<FrameReport> {
         let counted = self.frame.current().is_some_and(|current| current.variant.count);

@@ -27,6 +27,8 @@ pub enum Resource {
     Sums0,
     /// `(Σw κ, Σw rgb)`, if the frame needs depth, or colours and normals.
     Sums1,
+    /// Tile path: the tiles that splats may cover, after the workgroups of an indirect dispatch over them.
+    CoveredTiles,
     /// Tile path: the tiles that splats that face away may change, after the workgroups of an indirect dispatch over them.
     OpenTiles,
     /// Tile path: the tiles with pixels at edges, after the workgroups of an indirect dispatch over them.
@@ -81,6 +83,7 @@ impl Resource {
             Self::Visibility => "visibility",
             Self::Sums0 => "sums0",
             Self::Sums1 => "sums1",
+            Self::CoveredTiles => "covered tiles",
             Self::OpenTiles => "open tiles",
             Self::EdgeTiles => "edge tiles",
             Self::RevealedTiles => "revealed tiles",

@@ -248,6 +248,7 @@ impl FrameResources {
     pub fn record(&self, rec: &mut Recorder<'_>, uniforms: &Uniforms) {
         self.update(rec, uniforms);
         let Some((current, frame)) = self.frame() else { return };
+        let frame = Frame { background: uniforms.frame.background, ..frame };
         // Several passes count.
         frame.clear(rec, &[Resource::Counts]);
         let mut awaited = Vec::new();
@@ -300,6 +301,7 @@ impl FrameResources {
             tiles_of_slices: &self.tiles_of_slices,
             most_splats: self.most_splats(),
             number: self.slicing.frame(),
+            background: [0.0; 4],
             runs,
             batches,
         };
@@ -385,6 +387,7 @@ impl FrameResources {
         frame: &Description,
     ) -> Result<Vec<(ListExtent, Vec<u64>)>> {
         let variant = &frame.variant;
+        self.tiles_of_slices.clear();
         if !variant.is_tiled() {
             return Ok(Vec::new());
         }

@@ -69,7 +69,8 @@ impl Slicing {
         let lacked = written != self.incomplete;
         if lacked {
             self.incomplete = written;
-            self.threshold = self.threshold.min(self.last);
+            // A frame without splats lacks none, even if it was begun after the one that did.
+            self.threshold = self.threshold.min(self.last.max(f64::MIN_POSITIVE));
         }
         lacked
     }

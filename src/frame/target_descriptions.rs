@@ -63,6 +63,7 @@ impl Resource {
             }
             Self::Sums0 => &[&resource::SUMS0, &resource::SUMS0_IMAGE, &resource::SUMS0_INPUT],
             Self::Sums1 => &[&resource::SUMS1, &resource::SUMS1_IMAGE, &resource::SUMS1_INPUT],
+            Self::CoveredTiles => &[&resource::COVERED_TILES],
             Self::OpenTiles => &[&resource::OPEN_TILES],
             Self::EdgeTiles => &[&resource::EDGE_TILES],
             Self::RevealedTiles => &[&resource::REVEALED_TILES],
@@ -193,6 +194,7 @@ fn raster_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
 
 fn compute_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
     let outputs = stored_outputs(variant).into_iter();
+    let covered = variant.lists_tiles().then_some(tile_list::COVERED);
     let visibility = pixels(Resource::Visibility, Format::R32_UINT, 4, &resource::VISIBILITY);
     if !variant.split && !variant.sliced {
         let visibility = (variant.cull_auto || variant.mixed).then_some(visibility);
@@ -200,12 +202,12 @@ fn compute_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
         let edges = variant.mixed.then_some(tile_list::EDGES);
         let revealed = variant.occlusion_culling.then_some(tile_list::REVEALED);
         let coverage = coverage(variant).filter(|_| variant.mixed);
-        return [visibility, open, edges, revealed, coverage].into_iter().chain(outputs).collect();
+        return [covered, visibility, open, edges, revealed, coverage].into_iter().chain(outputs).collect();
     }
     if variant.visibility == Visibility::Nearest {
         // State between the slices of the nearest pass: depths and ids of splats.
         let nearest_splats = pixels(Resource::Sums0, Format::R32_UINT, 4, &resource::SUMS0);
-        return [Some(visibility), Some(nearest_splats), coverage(variant)]
+        return [covered, Some(visibility), Some(nearest_splats), coverage(variant)]
             .into_iter()
             .chain(outputs)
             .collect();
@@ -258,6 +260,19 @@ fn splat_resources(variant: &Variant) -> Vec<&'static shaders::Resource> {
     let clips = variant.clips.then_some(clips);
     let others = [&resource::BOXES, &resource::INCOMPLETE_FRAME];
     of_splats.iter().copied().chain(others).chain(clips).collect()
+}
+
+/// Whether frames clear a target before a pass that declares it.
+pub fn is_cleared(resource: Resource, variant: &Variant) -> bool {
+    match resource {
+        // Of the image, the filter reads covered tiles alone.
+        Resource::Image => !variant.lists_tiles() || variant.filter_radius == 0,
+        // Dispatches over all tiles write all of them.
+        Resource::Visibility | Resource::Coverage if variant.is_tiled() => {
+            variant.lists_tiles() || variant.sliced
+        }
+        _ => true,
+    }
 }
 
 /// Bytes of a target per pixel.

@@ -3,6 +3,7 @@
 use super::pass::{DrawTargets, InitialContents, Pass};
 use super::pyramids::Pyramids;
 use super::resource::Resource;
+use super::scene_resources::copy_to_host;
 use super::target_descriptions::{COVERAGE, Kind, TargetDescription, coverage, describe};
 use super::tile_list;
 use super::variant::Variant;
@@ -10,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::settings::Outputs;
 use crate::vk::shaders;
 use crate::vk::{
-    Access, Attachment, Binding, Buffer, Capabilities, DescriptorSet, Device, Encoder, Image, Use,
+    Access, Attachment, Binding, Buffer, Capabilities, Commands, DescriptorSet, Device, Encoder, Image, Use,
 };
 use ash::vk::Format;
 use std::sync::Arc;
@@ -183,16 +184,29 @@ impl RenderTargets {
         pyramid.into_iter().flat_map(move |pyramid| pyramid.with(access))
     }
 
-    /// Clears a target, if it exists: nearest points to ones, others to zeros.
-    pub fn clear(&self, enc: &mut Encoder<'_, '_>, resource: Resource) {
-        match (self.buffer(resource), resource) {
-            (Some(buffer), Resource::Nearest) => enc.ones(buffer),
-            (Some(buffer), Resource::OpenTiles | Resource::EdgeTiles) => {
-                enc.zero_range(buffer, 0, tile_list::HEADER)
+    /// Clears a target, if it exists: the final image to the background, nearest points to ones, others to zeros.
+    pub fn clear(&self, enc: &mut Encoder<'_, '_>, resource: Resource, background: [f32; 4]) {
+        match (self.find(resource).map(|(_, memory)| memory), resource) {
+            (Some(Memory::Image(image)), _) if resource == self.final_image() => {
+                enc.clear_image(image, background);
             }
-            (Some(buffer), _) => enc.zero(buffer),
+            (Some(Memory::Image(image)), _) => enc.clear_image(image, [0.0; 4]),
+            (Some(Memory::Buffer(buffer)), Resource::Nearest) => enc.ones(buffer),
+            // Its pass writes the tiles.
+            (Some(Memory::Buffer(buffer)), Resource::CoveredTiles) => {
+                enc.zero_range(buffer, 0, tile_list::HEADER);
+            }
+            (Some(Memory::Buffer(buffer)), _) => enc.zero(buffer),
             (None, _) => {}
         }
+    }
+
+    /// Reads back the tiles of the last frame that its boxes overlap, column and row of each; `None` if the frame has no list of them.
+    pub fn read_covered_tiles(&self, device: &Arc<Device>) -> Result<Option<Vec<[u32; 2]>>> {
+        let Some(list) = self.buffer(Resource::CoveredTiles) else { return Ok(None) };
+        let target = Buffer::readback(device, "read tiles", list.size())?;
+        Commands::new(device, false)?.run(|rec| copy_to_host(rec, list, &target))?;
+        Ok(Some(tile_list::listed(target.bytes())))
     }
 
     /// The image after all passes.

@@ -31,7 +31,7 @@ impl TileRect {
     }
 
     /// The least rectangle around both.
-    fn with(self, other: Self) -> Self {
+    pub fn with(self, other: Self) -> Self {
         match (self.is_empty(), other.is_empty()) {
             (_, true) => self,
             (true, _) => other,

@@ -7,7 +7,7 @@ use super::renderer::RenderOptions;
 use super::resource::Resource;
 use super::splat_buffers::SPLAT;
 use super::splat_list::{ATTRIBUTE_ROW, BOX};
-use super::target_descriptions::{Kind, describe, pixel_size};
+use super::target_descriptions::{Kind, describe, is_cleared, pixel_size};
 use super::variant::{SceneVariant, Variant};
 use crate::scene::{CLUSTER, Streams};
 use crate::settings::{Rasterizer, Settings};
@@ -16,7 +16,7 @@ use crate::vk::shaders::layout::Cluster;
 /// What a pass moves if each value that it declares to read or write moves once: streams, splats and targets.
 ///
 /// Real traffic is higher where values are read again, as a splat is by every tile that it covers. It is lower in passes over tiles, which skip
-/// hidden splats, and in those over pyramids, which skip samples without a point. Clip lines, lines and triangles are left out.
+/// hidden splats and empty tiles, and in those over pyramids, which skip samples without a point. Clip lines, lines and triangles are left out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PassTraffic {
     /// Name of the pass.
@@ -67,9 +67,9 @@ impl PassTraffic {
 
 /// The clear before a pass.
 fn cleared(pass: &Pass, variant: &Variant) -> PassTraffic {
-    // Of lists, only the lengths are.
-    let is_list = |resource: &Resource| [Resource::OpenTiles, Resource::EdgeTiles].contains(resource);
-    let cleared = pass.clears.iter().filter(|resource| !is_list(resource));
+    // Of that list, only the length is.
+    let is_list = |resource: &Resource| *resource == Resource::CoveredTiles;
+    let cleared = pass.clears.iter().filter(|resource| !is_list(resource) && is_cleared(**resource, variant));
     let pixel = cleared.map(|resource| per_pixel(*resource, variant)).sum();
     PassTraffic { name: "clear", pixel, ..PassTraffic::default() }
 }
@@ -181,8 +181,9 @@ mod tests {
         let computed = of(perspective_ewa::METHOD, Rasterizer::Compute);
         // Streams 28, splat 64, box 16, a row of attributes 16.
         assert_eq!(named(&computed, "footprint").surfel, 28.0 + 64.0 + 16.0 + 16.0);
-        // They are read again; the picture has four floats a pixel.
-        let surface = PassTraffic { name: "surface", surfel: 96.0, pixel: 16.0, written: 1.0, atomics: 0.0 };
+        // They are read again; the picture has four floats a pixel, the list of covered tiles eight bytes a tile.
+        let pixel = 16.0 + 8.0 / 64.0;
+        let surface = PassTraffic { name: "surface", surfel: 96.0, pixel, written: 1.0, atomics: 0.0 };
         assert_eq!(named(&computed, "surface"), surface);
         let drawn = of(perspective_ewa::METHOD, Rasterizer::Draw);
         // Depth 4 and sums 16, of which visibility has the depth alone.

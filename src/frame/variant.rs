@@ -276,12 +276,6 @@ impl Variant {
         self.pull_push.is_none() && self.rasterizer == Rasterizer::Compute
     }
 
-    /// Whether surface draws first the splats that face the eye, then again the tiles that others may change.
-    pub fn opens_tiles(&self) -> bool {
-        let whole = self.is_tiled() && !self.split && self.visibility != Visibility::Nearest;
-        whole && self.cull_auto
-    }
-
     /// Attribute rows of a splat, on the tile path: `lib/attributes.glsl`.
     pub fn attribute_rows(&self) -> u64 {
         u64::from(self.wide_sums0() || self.weights)

@@ -28,8 +28,8 @@ impl Buffer {
     /// As [`Buffer::storage`], for the workgroups of indirect dispatches, too.
     pub fn indirect(device: &Arc<Device>, name: &str, size: u64) -> Result<Self> {
         use vk::BufferUsageFlags as Usage;
-        let usage = Usage::STORAGE_BUFFER | Usage::TRANSFER_DST | Usage::INDIRECT_BUFFER;
-        Self::new(device, name, size, usage, Location::Device)
+        let usage = Usage::STORAGE_BUFFER | Usage::TRANSFER_DST | Usage::TRANSFER_SRC;
+        Self::new(device, name, size, usage | Usage::INDIRECT_BUFFER, Location::Device)
     }
 
     /// As [`Buffer::storage`], for a [`TexelView`], too.

@@ -143,6 +143,16 @@ impl<'r, 'a> Encoder<'r, 'a> {
         }
     }
 
+    /// Fills an image with `colour`. It has usage [`super::ImageUse::StoredOutput`], and the layout of its accesses in shaders.
+    pub fn clear_image(&mut self, image: &Image, colour: [f32; 4]) {
+        let (layout, colour) = (vk::ImageLayout::GENERAL, vk::ClearColorValue { float32: colour });
+        // SAFETY: recorded outside a render pass; the pass's uses brought the image, which is alive and can be copied to, into this layout.
+        unsafe {
+            let (raw, cmd) = (self.raw(), self.rec.cmd);
+            raw.cmd_clear_color_image(cmd, image.raw, layout, &colour, &[image.range()]);
+        }
+    }
+
     /// Fills `buffer` with 0 bits.
     pub fn zero(&mut self, buffer: &Buffer) {
         self.zero_range(buffer, 0, vk::WHOLE_SIZE);

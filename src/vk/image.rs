@@ -80,8 +80,13 @@ impl Image {
             }
             #[cfg(feature = "window")]
             ImageUse::Window => vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST,
-            ImageUse::Output | ImageUse::Stored | ImageUse::StoredOutput | ImageUse::FilteredOutput => {
+            ImageUse::Output | ImageUse::Stored | ImageUse::FilteredOutput => {
                 vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::SAMPLED
+            }
+            ImageUse::StoredOutput => {
+                vk::ImageUsageFlags::TRANSFER_SRC
+                    | vk::ImageUsageFlags::TRANSFER_DST
+                    | vk::ImageUsageFlags::SAMPLED
             }
         };
         let info = vk::ImageCreateInfo::default()

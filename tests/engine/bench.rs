@@ -428,7 +428,8 @@ fn passes_of_a_run_have_their_least_work() {
     let footprint = work(&timed(10_000, 64), "footprint");
     assert_eq!((footprint.bytes, footprint.pixels), (10_000 * (40 + 64 + 16 + 16), 0));
     let surface = work(&timed(10_000, 64), "surface");
-    assert_eq!((surface.bytes, surface.pixels), (10_000 * (64 + 16 + 16) + 64 * 64 * 16, 64 * 64));
+    let picture = 64 * 64 * 16 + 64 * 8; // with the list of its 64 tiles
+    assert_eq!((surface.bytes, surface.pixels), (10_000 * (64 + 16 + 16) + picture, 64 * 64));
     // Back faces are culled: those beyond the horizon, and points are one atomic each.
     let points = Settings { shading: Shading::Colour, ..Method::named("pull-push").unwrap().settings() };
     let project = work(&Plan { settings: points, ..timed(10_000, 64) }, "project");

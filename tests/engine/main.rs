@@ -14,6 +14,7 @@ mod bench_session;
 mod bench_text;
 mod billboards;
 mod capture;
+mod covered_tiles;
 mod creases;
 mod discs;
 mod distant;

@@ -28,7 +28,7 @@ fn pipelines_are_created_once_per_variant() {
         lit,
     ];
     // Distinct values of the constants that each module reads.
-    for (rasterizer, most) in [(Rasterizer::Draw, 17), (Rasterizer::Compute, 18)] {
+    for (rasterizer, most) in [(Rasterizer::Draw, 17), (Rasterizer::Compute, 19)] {
         let options = RenderOptions { size: SIZE, rasterizer: rasterizer.into(), ..Default::default() };
         let mut renderer = Renderer::new(&device, options).unwrap();
         let before = device.usage().pipelines;

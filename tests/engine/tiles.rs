@@ -305,8 +305,8 @@ fn split_passes_render_the_same_picture() {
             );
         }
         let between: &[_] = match alpha {
-            Alpha::Mask => &[],
-            Alpha::Coverage => &["visibility", "edge tiles", "coverage"],
+            Alpha::Mask => &["covered tiles"],
+            Alpha::Coverage => &["covered tiles", "visibility", "edge tiles", "coverage"],
         };
         assert_eq!(fused.2, [between, &["image", "normal", "depth"]].concat());
         assert!(split.2.contains(&"visibility") && split.2.contains(&"sums1"), "{:?}", split.2);

@@ -6,14 +6,14 @@
 //! ```
 //!
 //! On the compute path, `cull` leaves out clusters of surfels outside the picture, and the last three are one dispatch over tiles, `surface`,
-//! which finds the splats of a tile by `boxes`:
+//! which finds the splats of a tile by `boxes`, in the tiles that `covered` lists:
 //!
 //! ```text
-//! surfels ─ cull → clusters ─ footprint → splats ─ boxes → hierarchy ─ surface → picture, normal, depth
+//! surfels ─ cull → clusters ─ footprint → splats ─ boxes → hierarchy ─ covered → tiles ─ surface → picture, normal, depth
 //! ```
 //!
 //! With `--cull auto`, visibility first runs over the splats that face the eye, and `sides` drops some of the others. On the compute path
-//! `surface` draws all of the picture then, and again the tiles that the rest of the others may change. `occlusion`,
+//! `surface` draws the listed tiles then, and again those that the rest of the others may change. `occlusion`,
 //! `ambient` and `edl` darken the picture, and `filter` filters it, if the settings say so.
 //!
 //! Frames of more surfels than pixels cull hidden clusters in two phases: `cull` leaves out those that the last frame found hidden. After the
@@ -27,6 +27,7 @@
 
 use super::Path;
 use crate::frame::pass::Pass;
+use crate::frame::passes::covered::COVERED;
 use crate::frame::passes::footprint::{self, FOOTPRINT, MOVED};
 use crate::frame::passes::hidden::HIDDEN;
 use crate::frame::passes::open::{self, OPEN};
@@ -48,12 +49,9 @@ pub fn passes(path: Path, variant: &Variant) -> Vec<&'static Pass> {
     match path {
         Path::Compute => {
             let moved_boxes: &[&Pass] = if moved { &[&BOXES] } else { &[] };
-            let stages = [
-                &[&BOXES, &visibility::COMPUTE],
-                second,
-                moved_boxes,
-                &[&attribute::COMPUTE, &normalize::COMPUTE],
-            ];
+            let visibility = if sides { &visibility::COMPUTE_ALL } else { &visibility::COMPUTE };
+            let stages =
+                [&[&BOXES, visibility], second, moved_boxes, &[&attribute::COMPUTE, &normalize::COMPUTE]];
             [first, &stages.concat()].concat()
         }
         Path::Raster => {
@@ -70,9 +68,9 @@ pub fn passes(path: Path, variant: &Variant) -> Vec<&'static Pass> {
 /// The passes whose stages run tile by tile.
 fn whole(sides: bool, occlusion_culling: bool) -> Vec<&'static Pass> {
     if !sides {
-        return vec![&FOOTPRINT, &BOXES, &surface::SURFACE];
+        return vec![&FOOTPRINT, &BOXES, &COVERED, &surface::SURFACE];
     }
-    let fronts: &[&Pass] = &[&FOOTPRINT, &boxes::FRONTS, &surface::FRONTS];
+    let fronts: &[&Pass] = &[&FOOTPRINT, &boxes::FRONTS, &COVERED, &surface::FRONTS];
     let revealed: &[&Pass] = &[
         &HIDDEN,
         &footprint::REVEALED,

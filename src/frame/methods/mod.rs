@@ -8,7 +8,7 @@ use super::pass::Pass;
 use super::passes::ambient::AMBIENT;
 use super::passes::cull::CULL;
 use super::passes::edl::EDL;
-use super::passes::filter::FILTER;
+use super::passes::filter::{self, FILTER};
 use super::passes::occlusion::OCCLUSION;
 use super::passes::open::EDGES;
 use super::passes::order::ORDER;
@@ -34,19 +34,20 @@ pub enum Path {
 pub fn passes(variant: &Variant, path: Path, scenes: usize) -> Vec<&'static Pass> {
     let mut list = match (variant.pull_push, variant.visibility) {
         (Some(settings), _) => pull_push::passes(variant, settings.storage, scenes),
-        (None, Visibility::Nearest) => nearest::passes(path, variant.cull_auto),
+        (None, Visibility::Nearest) => nearest::passes(path, variant),
         (None, Visibility::Ray | Visibility::Axis) => blended::passes(path, variant),
     };
     if variant.mixed {
         list.extend(behind(path, variant));
     }
+    let filter = if variant.lists_tiles() { &filter::IN_COVERED_TILES } else { &FILTER };
     if !matches!(path, Path::Subpasses { .. }) {
         list.extend(
             [
                 (variant.ao, &OCCLUSION),
                 (variant.ao, &AMBIENT),
                 (variant.edl, &EDL),
-                (variant.filter_radius > 0, &FILTER),
+                (variant.filter_radius > 0, filter),
             ]
             .iter()
             .filter_map(|(there, pass)| there.then_some(*pass)),

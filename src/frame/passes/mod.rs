@@ -8,6 +8,7 @@ pub mod attribute;
 pub mod behind;
 pub mod boxes;
 pub mod copy;
+pub mod covered;
 pub mod cull;
 pub mod edl;
 pub mod fetch;
@@ -93,7 +94,7 @@ mod tests {
         all
     }
 
-    const RESOURCES: [Resource; 30] = [
+    const RESOURCES: [Resource; 31] = [
         Resource::VisibleClusters,
         Resource::Order,
         Resource::Splats,
@@ -105,6 +106,7 @@ mod tests {
         Resource::Sums0,
         Resource::Sums1,
         Resource::Attributes,
+        Resource::CoveredTiles,
         Resource::OpenTiles,
         Resource::Coverage,
         Resource::Nearest,

@@ -3,8 +3,8 @@
 use super::tiles;
 use crate::frame::pass::{Commands, Domain, DrawTargets, InitialContents, Pass, Program, Programs};
 use crate::frame::resource::Resource::{
-    Attributes, Boxes, Coverage, Depth, Image, IncompleteFrame, Normal, ScreenClips, Splats, Sums0, Sums1,
-    Visibility,
+    Attributes, Boxes, Coverage, CoveredTiles, Depth, Image, IncompleteFrame, Normal, ScreenClips, Splats,
+    Sums0, Sums1, Visibility,
 };
 use crate::vk::shaders::{
     NEAREST_CLIP_LINES_FRAGMENT, NEAREST_CLIP_LINES_VERTEX, NEAREST_COMPUTE, NEAREST_COVERAGE_FRAGMENT,
@@ -13,18 +13,27 @@ use crate::vk::shaders::{
 };
 use crate::vk::{Blend, DepthTest, Topology};
 
-/// One workgroup per tile; writes the picture.
+/// One workgroup per tile that splats may cover; writes the picture.
 pub static COMPUTE: Pass = Pass {
+    name: "nearest",
+    reads: &[Splats, Boxes, Attributes, ScreenClips, CoveredTiles],
+    writes: &[Image, Normal, Depth, IncompleteFrame],
+    clears: &[Image, Normal, Depth],
+    programs: Programs::OfFrame(|variant| {
+        let programs = tiles(variant, [&NEAREST_COMPUTE, &NEAREST_SUBGROUPS_COMPUTE]);
+        programs.into_iter().map(|program| Program { domain: Domain::CoveredTiles, ..program }).collect()
+    }),
+    commands: Commands::Dispatches,
+};
+
+/// One workgroup per tile and slice; the last slice writes the picture.
+pub static SLICED: Pass = Pass {
     name: "nearest",
     reads: &[Splats, Boxes, Attributes, ScreenClips],
     writes: &[Visibility, Sums0, Coverage, Image, Normal, Depth, IncompleteFrame],
-    clears: &[],
+    clears: &[Image, Normal, Depth],
     programs: Programs::OfFrame(|variant| {
-        let modules = match variant.sliced {
-            false => [&NEAREST_COMPUTE, &NEAREST_SUBGROUPS_COMPUTE],
-            true => [&NEAREST_SLICES_COMPUTE, &NEAREST_SUBGROUPS_SLICES_COMPUTE],
-        };
-        tiles(variant, modules)
+        tiles(variant, [&NEAREST_SLICES_COMPUTE, &NEAREST_SUBGROUPS_SLICES_COMPUTE])
     }),
     commands: Commands::Dispatches,
 };

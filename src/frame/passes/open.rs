@@ -1,14 +1,14 @@
 //! Open: marked tiles → list of them, for a dispatch over these (`open.glsl`).
 
 use crate::frame::pass::{Commands, Domain, Pass, Program, Programs};
-use crate::frame::resource::Resource::{EdgeTiles, OpenTiles, RevealedTiles};
+use crate::frame::resource::Resource::{CoveredTiles, EdgeTiles, OpenTiles, RevealedTiles};
 use crate::vk::shaders::{OPEN_COMPUTE, OPEN_EDGES_COMPUTE, OPEN_REVEALED_COMPUTE};
 
-/// One invocation per tile: those that `sides` has opened, for the second dispatch of `surface`.
+/// One invocation per tile: those that `sides` has opened, for the second dispatch of `surface`; they are covered from then on.
 pub static OPEN: Pass = Pass {
     name: "open",
     reads: &[],
-    writes: &[OpenTiles],
+    writes: &[OpenTiles, CoveredTiles],
     clears: &[],
     programs: Programs::OfFrame(|_| vec![Program::compute(&OPEN_COMPUTE, Domain::TileSlots)]),
     commands: Commands::Dispatches,
@@ -28,7 +28,7 @@ pub static EDGES: Pass = Pass {
 pub static REVEALED: Pass = Pass {
     name: "open",
     reads: &[],
-    writes: &[RevealedTiles],
+    writes: &[RevealedTiles, CoveredTiles],
     clears: &[],
     programs: Programs::OfFrame(|_| vec![Program::compute(&OPEN_REVEALED_COMPUTE, Domain::TileSlots)]),
     commands: Commands::Dispatches,

@@ -3,21 +3,24 @@
 use super::tiles;
 use crate::frame::pass::{Commands, Domain, Pass, Program, Programs};
 use crate::frame::resource::Resource::{
-    self, Attributes, Boxes, Coverage, Depth, EdgeTiles, Image, IncompleteFrame, Normal, OpenTiles,
-    RevealedTiles, ScreenClips, Splats, Visibility,
+    self, Attributes, Boxes, Coverage, CoveredTiles, Depth, EdgeTiles, Image, IncompleteFrame, Normal,
+    OpenTiles, RevealedTiles, ScreenClips, Splats, Visibility,
 };
 use crate::frame::variant::Variant;
 use crate::vk::shaders::{SURFACE_COMPUTE, SURFACE_SUBGROUPS_COMPUTE, constant};
 
-const READS: &[Resource] = &[Splats, Boxes, Attributes, ScreenClips];
+const READS: &[Resource] = &[Splats, Boxes, Attributes, ScreenClips, CoveredTiles];
 const WRITES: &[Resource] =
     &[Visibility, OpenTiles, EdgeTiles, RevealedTiles, Coverage, Image, Normal, Depth, IncompleteFrame];
 
-/// One workgroup per tile.
-pub static SURFACE: Pass = over(&[EdgeTiles], programs);
+/// One workgroup per tile that splats may cover.
+pub static SURFACE: Pass =
+    over(&[EdgeTiles, Image, Normal, Depth], |variant| programs_over(variant, Domain::CoveredTiles));
 
 /// The same for the splats that face the eye, before sides.
-pub static FRONTS: Pass = over(&[OpenTiles, EdgeTiles], |variant| programs_over(variant, Domain::FrontTiles));
+pub static FRONTS: Pass = over(&[Visibility, OpenTiles, EdgeTiles, Image, Normal, Depth], |variant| {
+    programs_over(variant, Domain::CoveredFrontTiles)
+});
 
 /// The same again in the tiles of revealed clusters.
 pub static REVEALED: Pass = over(&[], |variant| programs_over(variant, Domain::RevealedTiles));

@@ -2,7 +2,10 @@
 
 use super::tiles;
 use crate::frame::pass::{Commands, Domain, DrawTargets, InitialContents, Pass, Program, Programs};
-use crate::frame::resource::Resource::{Boxes, Coverage, IncompleteFrame, ScreenClips, Splats, Visibility};
+use crate::frame::resource::Resource::{
+    self, Boxes, Coverage, IncompleteFrame, ScreenClips, Splats, Visibility,
+};
+use crate::frame::variant::Variant;
 use crate::vk::shaders::{
     VISIBILITY_CLIP_LINES_FRAGMENT, VISIBILITY_CLIP_LINES_VERTEX, VISIBILITY_COMPUTE,
     VISIBILITY_COVERAGE_FRAGMENT, VISIBILITY_COVERAGE_VERTEX, VISIBILITY_FRAGMENT,
@@ -11,29 +14,29 @@ use crate::vk::shaders::{
 use crate::vk::{Blend, DepthTest, Topology};
 
 /// One workgroup per tile.
-pub static COMPUTE: Pass = Pass {
-    name: "visibility",
-    reads: &[Splats, Boxes, ScreenClips],
-    writes: &[Visibility, Coverage, IncompleteFrame],
-    clears: &[],
-    programs: Programs::OfFrame(|variant| {
-        tiles(variant, [&VISIBILITY_COMPUTE, &VISIBILITY_SUBGROUPS_COMPUTE])
-    }),
-    commands: Commands::Dispatches,
-};
+pub static COMPUTE: Pass = over_tiles(&[Visibility, Coverage], |variant| programs(variant, Domain::Tiles));
 
 /// The same for splats that face the eye, before sides.
-pub static COMPUTE_FRONTS: Pass = Pass {
-    name: "visibility",
-    reads: &[Splats, Boxes, ScreenClips],
-    writes: &[Visibility, Coverage, IncompleteFrame],
-    clears: &[],
-    programs: Programs::OfFrame(|variant| {
-        let programs = tiles(variant, [&VISIBILITY_COMPUTE, &VISIBILITY_SUBGROUPS_COMPUTE]).into_iter();
-        programs.map(|program| Program { domain: Domain::FrontTiles, ..program }).collect()
-    }),
-    commands: Commands::Dispatches,
-};
+pub static COMPUTE_FRONTS: Pass = over_tiles(&[Visibility], |variant| programs(variant, Domain::FrontTiles));
+
+/// The same for all splats, from the depths of those that face the eye.
+pub static COMPUTE_ALL: Pass = over_tiles(&[Coverage], |variant| programs(variant, Domain::Tiles));
+
+const fn over_tiles(clears: &'static [Resource], programs: fn(&Variant) -> Vec<Program>) -> Pass {
+    Pass {
+        name: "visibility",
+        reads: &[Splats, Boxes, ScreenClips],
+        writes: &[Visibility, Coverage, IncompleteFrame],
+        clears,
+        programs: Programs::OfFrame(programs),
+        commands: Commands::Dispatches,
+    }
+}
+
+fn programs(variant: &Variant, domain: Domain) -> Vec<Program> {
+    let programs = tiles(variant, [&VISIBILITY_COMPUTE, &VISIBILITY_SUBGROUPS_COMPUTE]);
+    programs.into_iter().map(|program| Program { domain, ..program }).collect()
+}
 
 /// Splat triangles with a depth test.
 pub static RASTER: Pass = Pass {
