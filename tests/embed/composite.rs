@@ -273,7 +273,7 @@ fn many_frames_of_all_sizes_and_scenes_leave_nothing() {
             .map(|name| Method::named(name).unwrap().settings());
         let mut under_way = UnderWay::new(2);
         let mut most = 0;
-        for number in 0..if_whole(1000, 100usize) {
+        for number in 0..if_whole(1000, 36usize) {
             // Each size lasts for a few frames.
             let size = [[64, 48], [33, 48], [64, 1]][number / 7 % 3];
             let view = View::whole(camera(), size);

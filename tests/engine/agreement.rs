@@ -91,6 +91,7 @@ fn every_case_by_every_method() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn every_case_with_coverage() {
     let all = [Splatting::default(), object_ewa::METHOD.splatting, sprites::UNFILTERED.splatting];
     let by = |(i, splatting): (usize, Splatting)| {
@@ -151,6 +152,7 @@ fn combined(footprint: Footprint, visibility: Visibility) -> Option<Splatting> {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn every_footprint_under_every_visibility_with_coverage() {
     let footprints = [
         Footprint::Conic,

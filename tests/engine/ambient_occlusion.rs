@@ -19,6 +19,7 @@ use surfel::{RenderOptions, Settings};
 const OCCLUSION: f64 = 2.2e-3 / 16.0;
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn every_kind_of_picture_is_darkened() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let renderers = Renderers::new(&device);

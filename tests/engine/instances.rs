@@ -116,6 +116,7 @@ fn an_identity_placement_renders_the_frame_of_the_scene() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn instances_of_a_scene_share_allocations() {
     let Some(device) = new_device(DeviceLimits::default()) else { return };
     let scene = Arc::new(Scene::upload(&device, &plain(50)).unwrap());
@@ -232,6 +233,7 @@ fn differing(a: &Picture, b: &Picture) -> usize {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn placed_points_match_one_model_by_pull_push() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let (a, b) = (painted(20_000), plain(12_000));
@@ -327,6 +329,7 @@ fn ids_continue_from_scene_to_scene() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn counts_are_summed_and_passes_are_the_same() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     // All in Morton order: others are sorted, or their clusters are not culled.

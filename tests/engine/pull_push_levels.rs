@@ -393,6 +393,7 @@ fn points_smaller_than_a_pixel() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn two_sided_ellipses_billboards_and_no_colours() {
     let named = |name: &str| cases().into_iter().find(|case: &Case| case.name == name).unwrap().surfels;
     let list = [
@@ -439,6 +440,7 @@ fn more_pixels_than_a_row_of_workgroups() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn compact_samples() {
     let mixed = scenes::model("scene:mixed?segments=200&points=30000&primitives=on").unwrap();
     let list = [

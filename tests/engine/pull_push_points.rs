@@ -149,6 +149,7 @@ fn drawn_points_are_computed_ones_bit_for_bit_and_as_many() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn both_meet_lines_and_triangles_alike() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let tree = || scenes::model("scene:tree?segments=12&depth=2&primitives=on").unwrap();
@@ -224,6 +225,7 @@ fn of_points_as_near_the_first_is_seen() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn every_size_and_depth_is_drawn_as_computed() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let sphere = scenes::open("scene:bumpy-sphere?points=20000&seed=1").unwrap();

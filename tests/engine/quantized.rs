@@ -73,6 +73,7 @@ fn frames_of_every_case_match_the_reference() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn curvatures_and_methods_match_the_reference() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let renderers = Renderers::new(&device);
@@ -152,6 +153,7 @@ fn chunks_instances_and_exact_clusters() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn levels_of_detail_are_drawn_where_those_of_exact_points_are() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let mut surfels = scenes::open("scene:bumpy-sphere?points=40000").unwrap();

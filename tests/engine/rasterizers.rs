@@ -10,6 +10,7 @@ use surfel::vk::DeviceLimits;
 use surfel::{Rasterizer, RenderOptions, Renderer, Scene};
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn a_preferred_rasterizer_is_taken_where_both_support_the_frame() {
     use Rasterizer::{Compute, Draw};
     use RasterizerReason::{Default, Faster, OnlySupported, Required};

@@ -72,6 +72,7 @@ fn closed_surfaces_are_culled_and_open_ones_are_not() {
 
 /// Towards outlines, the surface in the next pixel is nearer by many radii of discs that are far below a pixel.
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn small_pictures_of_dense_closed_surfaces_are_culled() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let eye = DVec3::new(1.7, 1.37, 2.73);
@@ -142,6 +143,7 @@ fn inner(picture: &Picture, eye: DVec3) -> impl Iterator<Item = usize> {
 
 /// Its outside hides a part of its inside.
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn an_open_bowl_is_whole_from_above() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     for method in [perspective_ewa::METHOD, pull_push::METHOD] {
