@@ -23,6 +23,8 @@ const float DARKEST = 1.0 / 1024.0;
 
 const ivec2 CORNERS[4] = ivec2[](ivec2(-1, -1), ivec2(0, -1), ivec2(-1, 0), ivec2(0, 0));
 
+// The image of tiles without splats may be undefined, as in pass edl.
+//
 // Four pixels around a corner of blocks have the same 4 × 4 blocks around them, in which each direction and distance of samples is once.
 void main() {
     ivec2 corner = invocation_pixel(), size = picture_size();

@@ -22,7 +22,7 @@ float rise_to(ivec2 pixel, ivec2 step, ivec2 size, float depth) {
     return (depth - near) / (width * length(vec2(step)));
 }
 
-// Where pixels are filtered later, the image of tiles without splats is undefined, here and after it.
+// The image of tiles without splats may be undefined, before and after: it has no depths there, and pass filter does not read it.
 void main() {
     ivec2 pixel = invocation_pixel(), size = picture_size();
     if (any(greaterThanEqual(pixel, size))) return;

@@ -57,7 +57,7 @@ uint covered_bits_of(int y) {
     return covered_bits >> TILE_COLUMNS * ((y >> int(TILE_BITS)) - first_tile.y);
 }
 
-// Premultiplied by α; 0 outside the picture.
+// Premultiplied by α; 0 outside the picture, and in tiles that are not covered.
 vec4 load(ivec2 pixel, ivec2 size, uint row_bits) {
     ivec2 inside = clamp(pixel, ivec2(0), size - 1);
     vec4 value = imageLoad(image_output, inside);
