@@ -285,6 +285,7 @@ fn write_globe(program: &Program) {
 
 /// Against the exact picture of the textured triangles.
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn textures_of_coarse_meshes_are_as_sharp_as_their_images() {
     let Some(program) = Program::with_device("textures_of_coarse_meshes_are_as_sharp_as_their_images") else {
         return;
@@ -344,6 +345,7 @@ fn a_strength_of_eye_dome_lighting_implies_it() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn ambient_occlusion_has_a_strength() {
     let Some(program) = Program::with_device("ambient_occlusion_has_a_strength") else { return };
     let picture = |options: &str| {

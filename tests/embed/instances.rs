@@ -182,6 +182,7 @@ fn list(number: usize, scenes: &[Arc<Scene>; 3]) -> Vec<Instance> {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn lists_that_change_with_every_frame_leave_nothing() {
     let Some(host) = open(|all| all) else { return };
     let (memory, counts) = Counted::new(&host);

@@ -193,6 +193,7 @@ fn every_footprint_under_every_visibility_with_coverage() {
 
 /// Choices along one axis that no preset makes.
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn every_case_by_other_axes() {
     let conic = Splatting::default();
     let nearest = Splatting { visibility: Visibility::Nearest, normalization: Normalization::None, ..conic };

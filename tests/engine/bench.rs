@@ -390,6 +390,7 @@ fn inputs_without_surfels_are_refused() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn rates_of_a_device_are_of_its_operations() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let sizes = Sizes { copy: 8 << 20, words: 1 << 16, side: 256 };

@@ -268,6 +268,7 @@ fn a_region_is_captured_as_it_is_seen() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn every_window_has_its_own_weights() {
     let limits = DeviceLimits { max_storage_buffer_range: Some(1 << 20), ..Default::default() };
     let Some(device) = device(limits) else { return };

@@ -388,6 +388,7 @@ fn updates_that_do_not_fit() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn sizes_devices_and_readings_out_of_turn() {
     let limits = DeviceLimits { max_image_side: Some(16_384), ..Default::default() };
     let Some(device) = device(limits) else { return };

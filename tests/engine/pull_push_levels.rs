@@ -455,6 +455,7 @@ fn compact_samples() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn coverage() {
     let tree = scenes::model("scene:tree?segments=12&depth=2&primitives=on").unwrap();
     assert_passes_with(

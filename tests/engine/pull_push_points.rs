@@ -126,6 +126,7 @@ fn cameras(size: [u32; 2]) -> [Camera; 2] {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn drawn_points_are_computed_ones_bit_for_bit_and_as_many() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     for (i, case) in cases().iter().enumerate() {

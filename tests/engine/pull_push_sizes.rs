@@ -45,6 +45,7 @@ fn coverage(device: &Arc<Device>, subject: &Subject, side: u32) -> (f64, usize) 
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn small_pictures_are_whole() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let models = [

@@ -45,6 +45,7 @@ fn bumpy(points: usize) -> Surfels {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn frames_of_every_case_match_the_reference() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let renderers = Renderers::new(&device);

@@ -112,6 +112,7 @@ fn the_first_colours_are_those_of_the_command_line() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn every_shading_looks_like_its_screenshot() {
     let Some((display, program)) = setup("every_shading_looks_like_its_screenshot") else {
         return;
