@@ -1,27 +1,11 @@
 // Fetch: writes the samples of level 0 from the nearest point of each pixel, which is of a surfel, a segment (LINES) or a triangle
-// (TRIANGLES). With RASTER_POINTS the points of surfels come from the raster path. EMPTY writes empty samples.
+// (TRIANGLES). With RASTER_POINTS the points of surfels come from the raster path.
 #version 450
 #pragma variant LINES
 #pragma variant TRIANGLES
 #pragma variant RASTER_POINTS
-#pragma variant EMPTY
 #extension GL_GOOGLE_include_directive : require
 #ifdef COMPUTE
-
-#ifdef EMPTY
-
-#include "lib/frame.glsl"
-#include "lib/pixel_group.glsl"
-#include "lib/pyramid.glsl"
-
-PYRAMID_TO_WRITE(2, to)
-
-void main() {
-    ivec2 pixel = invocation_pixel();
-    if (is_within(picture_size(), pixel)) store_to(pixel, NO_SAMPLE);
-}
-
-#else
 
 #ifdef RASTER_POINTS
 #extension GL_EXT_samplerless_texture_functions : require
@@ -40,6 +24,7 @@ void main() {
 #define NEAREST_ACCESS readonly
 #include "lib/nearest_points.glsl"
 #endif
+#include "lib/occupied_tiles.glsl"
 
 PYRAMID_TO_WRITE(2, to)
 
@@ -136,18 +121,15 @@ bool nearest_at(uint index, ivec2 pixel, out uint id, out uint nearest) {
 }
 
 void main() {
-    ivec2 pixel = invocation_pixel();
+    ivec2 pixel = LISTED_PIXEL(occupied, 0);
     if (!is_within(picture_size(), pixel)) return;
     uint index = uint(pixel.y * picture_size().x + pixel.x);
     uint id, nearest;
-    if (!nearest_at(index, pixel, id, nearest)) {
-        if (first_id() == 0) store_to(pixel, NO_SAMPLE);
-    } else if (id - first_id() < chunk.count) {
+    if (nearest_at(index, pixel, id, nearest) && id - first_id() < chunk.count) {
         Sample s = to_world_sample(sample_of(id - first_id(), pixel, nearest));
         s.id = id;
         store_to(pixel, s);
     }
 }
 
-#endif
 #endif

@@ -10,6 +10,9 @@
 #include "lib/pyramid.glsl"
 #include "lib/level.glsl"
 #include "lib/camera_rays.glsl"
+#include "lib/occupied_tiles.glsl"
+
+layout(constant_id = 32) const bool PING_PONG = false; // both pyramids alternate by level: all pixels are written
 
 PYRAMID_TO_READ(3, from)
 PYRAMID_TO_WRITE(2, to)
@@ -59,7 +62,7 @@ Sample nearer(Sample a, Sample b) {
 }
 
 void main() {
-    ivec2 pixel = invocation_pixel();
+    ivec2 pixel = !PING_PONG && pass.level < LISTED_LEVELS ? LISTED_PIXEL(occupied, pass.level) : invocation_pixel();
     if (!is_within(pass.size, pixel)) return;
     vec2 centre = level_centre(pass.level, pixel);
     Sample a = child(0, pixel, centre), b = child(1, pixel, centre), c = child(2, pixel, centre), d = child(3, pixel, centre);

@@ -16,9 +16,10 @@ PYRAMID_TO_READ(2, final)
 PYRAMID_TO_WRITE(2, to)
 
 #include "lib/reconstruction.glsl"
+#include "lib/filled_tiles.glsl"
 
 void main() {
-    ivec2 pixel = invocation_pixel();
+    ivec2 pixel = pass.level < LISTED_LEVELS ? LISTED_PIXEL(filled, pass.level) : invocation_pixel();
     if (is_within(pass.size, pixel)) store_to(pass.to_origin + pixel, reconstructed(pixel));
 }
 

@@ -22,6 +22,7 @@ PYRAMID_TO_READ(2, final)
 PYRAMID_TO_READ(3, from)
 
 #include "lib/reconstruction.glsl"
+#include "lib/filled_tiles.glsl"
 
 layout(constant_id = 48) const bool RECONSTRUCT = false; // level 0 is reconstructed here: push does not store it
 
@@ -73,7 +74,7 @@ float coverage_of(ivec2 pixel) {
 }
 
 void main() {
-    ivec2 pixel = invocation_pixel();
+    ivec2 pixel = LISTED_PIXEL(filled, 0);
     if (!is_within(picture_size(), pixel)) return;
     Sample s;
     if (RECONSTRUCT) s = reconstructed(pixel);

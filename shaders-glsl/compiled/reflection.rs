@@ -386,7 +386,7 @@ pub static FETCH_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_compute.spv"),
     constants: &[0, 1, 5, 12, 13, 17, 22, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 68, 73, 78, 79],
-    resources: &[(&resource::FRAME, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
+    resources: &[(&resource::FRAME, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST, false), (&resource::OCCUPIED_TILES, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -396,7 +396,7 @@ pub static FETCH_LINES_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_lines_compute.spv"),
     constants: &[0, 17, 28, 29, 33, 34, 37, 38, 39, 79],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::LINE_DIRECTIONS, false), (&resource::VERTEX_COLOURS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::LINE_DIRECTIONS, false), (&resource::VERTEX_COLOURS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, false), (&resource::OCCUPIED_TILES, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -406,7 +406,7 @@ pub static FETCH_TRIANGLES_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_triangles_compute.spv"),
     constants: &[0, 17, 28, 29, 33, 34, 37, 38, 39, 79],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::VERTEX_COLOURS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::VERTEX_COLOURS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, false), (&resource::OCCUPIED_TILES, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -416,18 +416,8 @@ pub static FETCH_RASTER_POINTS_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_raster_points_compute.spv"),
     constants: &[0, 1, 5, 12, 13, 17, 22, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 68, 73, 78, 79],
-    resources: &[(&resource::FRAME, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST_ID, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
+    resources: &[(&resource::FRAME, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST_ID, false), (&resource::OCCUPIED_TILES, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
     push: size_of::<layout::Chunk>() as u32,
-};
-
-/// The compute stage of `shaders-glsl/fetch.glsl`.
-pub static FETCH_EMPTY_COMPUTE: Module = Module {
-    name: "fetch_empty_compute",
-    stage: ShaderStageFlags::COMPUTE,
-    spirv: spirv!("fetch_empty_compute.spv"),
-    constants: &[17, 33, 34, 38, 39],
-    resources: &[(&resource::FRAME, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true)],
-    push: 0,
 };
 
 /// The vertex stage of `shaders-glsl/fill.glsl`.
@@ -448,6 +438,16 @@ pub static FILL_FRAGMENT: Module = Module {
     constants: &[],
     resources: &[],
     push: size_of::<layout::FillOptions>() as u32,
+};
+
+/// The compute stage of `shaders-glsl/filled.glsl`.
+pub static FILLED_COMPUTE: Module = Module {
+    name: "filled_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("filled_compute.spv"),
+    constants: &[33],
+    resources: &[(&resource::FRAME, false), (&resource::OCCUPIED_TILES, false), (&resource::FILLED_TILES, true), (&resource::FINAL_QUAD0, false)],
+    push: size_of::<layout::Step>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/filter.glsl`.
@@ -690,6 +690,26 @@ pub static OCCLUSION_COMPUTE: Module = Module {
     push: 0,
 };
 
+/// The compute stage of `shaders-glsl/occupied.glsl`.
+pub static OCCUPIED_COMPUTE: Module = Module {
+    name: "occupied_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("occupied_compute.spv"),
+    constants: &[],
+    resources: &[(&resource::FRAME, false), (&resource::NEAREST, false), (&resource::OCCUPIED_TILES, true)],
+    push: 0,
+};
+
+/// The compute stage of `shaders-glsl/occupied.glsl`.
+pub static OCCUPIED_RASTER_POINTS_COMPUTE: Module = Module {
+    name: "occupied_raster_points_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("occupied_raster_points_compute.spv"),
+    constants: &[],
+    resources: &[(&resource::FRAME, false), (&resource::NEAREST_ID, false), (&resource::OCCUPIED_TILES, true)],
+    push: 0,
+};
+
 /// The compute stage of `shaders-glsl/open.glsl`.
 pub static OPEN_COMPUTE: Module = Module {
     name: "open_compute",
@@ -835,8 +855,8 @@ pub static PULL_COMPUTE: Module = Module {
     name: "pull_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("pull_compute.spv"),
-    constants: &[0, 17, 28, 33, 34, 35, 38, 39, 68],
-    resources: &[(&resource::VIEWS, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
+    constants: &[0, 17, 28, 32, 33, 34, 35, 38, 39, 68],
+    resources: &[(&resource::VIEWS, false), (&resource::OCCUPIED_TILES, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
 
@@ -846,7 +866,7 @@ pub static PUSH_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("push_compute.spv"),
     constants: &[0, 17, 28, 32, 33, 34, 35, 38, 39, 65, 68, 79],
-    resources: &[(&resource::VIEWS, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
+    resources: &[(&resource::VIEWS, false), (&resource::FILLED_TILES, false), (&resource::TO_IMAGE0, true), (&resource::TO_IMAGE1, true), (&resource::TO_IMAGE2, true), (&resource::TO_IMAGE3, true), (&resource::TO_IMAGE4, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
 
@@ -896,7 +916,7 @@ pub static SHADE_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_compute.spv"),
     constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48, 65, 68, 76, 79],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::FILLED_TILES, false), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
 
@@ -906,7 +926,7 @@ pub static SHADE_LOOKUPS_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_lookups_compute.spv"),
     constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48, 65, 68, 76, 79],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::FILLED_TILES, false), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
 
@@ -916,7 +936,7 @@ pub static SHADE_STORE_IDS_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_store_ids_compute.spv"),
     constants: &[0, 6, 7, 9, 10, 17, 28, 31, 32, 33, 34, 35, 38, 39, 48, 65, 68, 76, 79],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::ID_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::ID_OUTPUT, true), (&resource::FILLED_TILES, false), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
 
@@ -926,7 +946,7 @@ pub static SHADE_LOOKUPS_STORE_IDS_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_lookups_store_ids_compute.spv"),
     constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 32, 33, 34, 35, 36, 38, 39, 48, 65, 68, 76, 79],
-    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::ID_OUTPUT, true), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::IMAGE_OUTPUT, true), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::ID_OUTPUT, true), (&resource::FILLED_TILES, false), (&resource::FINAL_QUAD0, false), (&resource::FINAL_QUAD1, false), (&resource::FINAL_QUAD2, false), (&resource::FINAL_SINGLE0, false), (&resource::FINAL_SINGLE1, false), (&resource::FROM_QUAD0, false), (&resource::FROM_QUAD1, false), (&resource::FROM_QUAD2, false), (&resource::FROM_SINGLE0, false), (&resource::FROM_SINGLE1, false)],
     push: size_of::<layout::Step>() as u32,
 };
 
@@ -1160,7 +1180,7 @@ pub mod constant {
     pub const PAPER: u32 = 28;
     /// `PERSPECTIVE`, first in `shaders-glsl/ambient.glsl`.
     pub const PERSPECTIVE: u32 = 0;
-    /// `PING_PONG`, first in `shaders-glsl/push.glsl`.
+    /// `PING_PONG`, first in `shaders-glsl/pull.glsl`.
     pub const PING_PONG: u32 = 32;
     /// `POSITION_OFFSET`, first in `shaders-glsl/attribute.glsl`.
     pub const POSITION_OFFSET: u32 = 50;
@@ -1326,6 +1346,15 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
     };
 
+    /// `FilledTiles`, first in `shaders-glsl/filled.glsl`.
+    pub static FILLED_TILES: Resource = Resource {
+        name: "FilledTiles",
+        set: 1,
+        binding: 31,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
     /// `Frame`, first in `shaders-glsl/ambient.glsl`.
     pub static FRAME: Resource = Resource {
         name: "Frame",
@@ -1459,6 +1488,15 @@ pub mod resource {
         binding: 3,
         kind: DescriptorType::STORAGE_BUFFER,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
+    };
+
+    /// `OccupiedTiles`, first in `shaders-glsl/fetch.glsl`.
+    pub static OCCUPIED_TILES: Resource = Resource {
+        name: "OccupiedTiles",
+        set: 1,
+        binding: 30,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
     /// `OpenTiles`, first in `shaders-glsl/hidden.glsl`.
@@ -1722,7 +1760,7 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `final_quad0`, first in `shaders-glsl/push.glsl`.
+    /// `final_quad0`, first in `shaders-glsl/filled.glsl`.
     pub static FINAL_QUAD0: Resource = Resource {
         name: "final_quad0",
         set: 2,
@@ -2225,6 +2263,19 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(FillOptions, scale) == 0);
     const _: () = assert!(std::mem::size_of::<FillOptions>() == 16);
 
+    /// `FilledTiles`, 40 bytes, first in `shaders-glsl/filled.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct FilledTiles {
+        /// Byte 0.
+        pub workgroups: [Workgroups; 3],
+        /// Byte 36.
+        pub listed_count: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(FilledTiles, workgroups) == 0);
+    const _: () = assert!(std::mem::offset_of!(FilledTiles, listed_count) == 36);
+    const _: () = assert!(std::mem::size_of::<FilledTiles>() == 40);
+
     /// `Frame`, 224 bytes, first in `shaders-glsl/ambient.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -2438,6 +2489,19 @@ pub mod layout {
     }
     const _: () = assert!(std::mem::offset_of!(Materials, count) == 0);
     const _: () = assert!(std::mem::size_of::<Materials>() == 4);
+
+    /// `OccupiedTiles`, 40 bytes, first in `shaders-glsl/fetch.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct OccupiedTiles {
+        /// Byte 0.
+        pub workgroups: [Workgroups; 3],
+        /// Byte 36.
+        pub listed_count: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(OccupiedTiles, workgroups) == 0);
+    const _: () = assert!(std::mem::offset_of!(OccupiedTiles, listed_count) == 36);
+    const _: () = assert!(std::mem::size_of::<OccupiedTiles>() == 40);
 
     /// `OpenTiles`, 20 bytes, first in `shaders-glsl/hidden.glsl`.
     #[repr(C)]
@@ -2777,5 +2841,21 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(VisibleClusters, revealed_layers) == 24);
     const _: () = assert!(std::mem::offset_of!(VisibleClusters, revealed_count) == 28);
     const _: () = assert!(std::mem::size_of::<VisibleClusters>() == 32);
+
+    /// `Workgroups`, 12 bytes, first in `shaders-glsl/fetch.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct Workgroups {
+        /// Byte 0.
+        pub columns: u32,
+        /// Byte 4.
+        pub rows: u32,
+        /// Byte 8.
+        pub layers: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(Workgroups, columns) == 0);
+    const _: () = assert!(std::mem::offset_of!(Workgroups, rows) == 4);
+    const _: () = assert!(std::mem::offset_of!(Workgroups, layers) == 8);
+    const _: () = assert!(std::mem::size_of::<Workgroups>() == 12);
 
 }

@@ -34,6 +34,17 @@ struct Sums {
     vec2 x_products, y_products; // and of displacements and coordinates
 };
 
+// Zeros instead of the undefined words of an empty sample: a clear writes the first image only.
+Sample without_undefined_words(Sample s) {
+    bool empty = s.near == 0.0;
+    s.far = empty ? 0.0 : s.far;
+    s.depth = empty ? 0.0 : s.depth;
+    s.normal = empty ? vec3(0.0) : s.normal;
+    s.colour = empty ? vec3(0.0) : s.colour;
+    s.coordinates = empty ? vec2(0.0) : s.coordinates;
+    return s;
+}
+
 // Candidate k of a pixel. Its displacement is relative to the pixel's centre.
 Sample candidate(uint k, ivec2 pixel) {
     bool coarser = k < COARSER;
@@ -48,6 +59,7 @@ Sample candidate(uint k, ivec2 pixel) {
     // With ping-pong, the pyramid that is read holds the final coarser level and a copy of this one.
     if (coarser && !PING_PONG) s = load_final(texel);
     else s = load_from(texel);
+    s = without_undefined_words(s);
     if (!is_within(size, from_pixel)) s.near = 0.0;
     // Integer offsets keep the digits that differences of screen positions lose.
     s.displacement += (coarser ? vec2(2 * from_pixel - pixel) + 0.5 : vec2(from_pixel - pixel)) * float(1u << pass.level);

@@ -1,4 +1,5 @@
-// Lists of tiles for indirect dispatches of a workgroup per tile: pass open lists the marked ones, pass covered those that splats may cover.
+// Lists of tiles for indirect dispatches of a workgroup per tile: pass open lists the marked ones, pass covered those that splats may cover;
+// lib/pyramid_tiles.glsl has those of pull–push.
 
 #ifndef LIB_TILE_LIST
 #define LIB_TILE_LIST

@@ -16,7 +16,7 @@ pub struct Pass {
     pub reads: &'static [Resource],
     /// Resources that it writes and may read, without its attachments.
     pub writes: &'static [Resource],
-    /// Resources cleared before it.
+    /// Resources cleared before it, which it or a later pass writes.
     pub clears: &'static [Resource],
     /// Its pipelines.
     pub programs: Programs,
@@ -113,18 +113,20 @@ pub enum Domain {
     VisibleClusters,
     /// One workgroup per cluster in the list of those that pass hidden has revealed.
     RevealedClusters,
-    /// One invocation per pixel, for each chunk of a scene's surfels.
+    /// One invocation per pixel of occupied tiles, for each chunk of a scene's surfels.
     PixelsOfSurfels,
     /// One invocation per segment.
     Lines,
-    /// One invocation per pixel.
+    /// One invocation per pixel of occupied tiles.
     PixelsOfLines,
     /// One invocation per triangle.
     Triangles,
     /// Workgroups that share the list of large triangles.
     LargeTriangles,
-    /// One invocation per pixel.
+    /// One invocation per pixel of occupied tiles.
     PixelsOfTriangles,
+    /// One invocation per row of pixels of a pyramid tile.
+    RowsOfPyramidTiles,
     /// One invocation per pixel.
     Pixels,
     /// One invocation per block of pixels.
@@ -153,6 +155,8 @@ pub enum Domain {
     RevealedTiles,
     /// Elements of a level, as the steps of the pass define.
     Level,
+    /// The same of levels that have few: from the third on.
+    CoarseLevels,
     /// One triangle per splat.
     SplatTriangles,
     /// One point per surfel.
@@ -184,6 +188,9 @@ impl Domain {
             Self::OpenTiles => Some(Resource::OpenTiles),
             Self::EdgeTiles => Some(Resource::EdgeTiles),
             Self::RevealedTiles => Some(Resource::RevealedTiles),
+            Self::PixelsOfSurfels | Self::PixelsOfLines | Self::PixelsOfTriangles => {
+                Some(Resource::OccupiedTiles)
+            }
             _ => None,
         }
     }
@@ -214,7 +221,9 @@ impl Domain {
             | Self::OpenTiles
             | Self::EdgeTiles
             | Self::RevealedTiles
+            | Self::RowsOfPyramidTiles
             | Self::Level
+            | Self::CoarseLevels
             | Self::FullScreen => Scope::View,
         }
     }

@@ -112,11 +112,11 @@ impl Pipelines {
         Self { made: HashMap::new(), render_passes: HashMap::new(), host }
     }
 
-    /// The passes of a frame of `variant` with so many scenes.
-    pub fn passes(&self, variant: &Variant, scenes: usize) -> Vec<&'static Pass> {
-        let Some(host) = &self.host else { return passes(variant, Path::of(variant), scenes) };
+    /// The passes of a frame of `variant`.
+    pub fn passes(&self, variant: &Variant) -> Vec<&'static Pass> {
+        let Some(host) = &self.host else { return passes(variant, Path::of(variant)) };
         let seed = host.draws.iter().any(|draw| draw.pass.name == "seed");
-        passes(variant, Path::Subpasses { seed }, scenes)
+        passes(variant, Path::Subpasses { seed })
     }
 
     /// Whether raster passes are drawn in subpasses of a host.

@@ -32,7 +32,7 @@ impl FramePlan {
         rasterizer: Rasterizer,
     ) -> Self {
         let variant = Variant::new(scenes, perspective, settings, options, rasterizer);
-        let passes = passes(&variant, Path::of(&variant), scenes.len());
+        let passes = passes(&variant, Path::of(&variant));
         let mut names: Vec<_> = passes.iter().map(|pass| pass.name).collect();
         // Steps of one pass have one name.
         names.dedup();

@@ -11,7 +11,9 @@ use crate::settings::Precision;
 use crate::settings::pull_push::Storage;
 use crate::vk::shaders::layout::Step;
 use crate::vk::shaders::{self, resource};
-use crate::vk::{Access, Binding, Capabilities, DescriptorSet, Device, Image, ImageUse, Use, pixel_bytes};
+use crate::vk::{
+    Access, Binding, Capabilities, DescriptorSet, Device, Encoder, Image, ImageUse, Use, pixel_bytes,
+};
 use ash::vk::Format;
 use std::sync::Arc;
 
@@ -196,6 +198,13 @@ impl Pyramid {
         self.levels.origin(level.saturating_sub(self.finest))
     }
 
+    /// Makes all samples empty: their first image has the distances, which are 0 then; their other words stay undefined.
+    pub(super) fn clear(&self, enc: &mut Encoder<'_, '_>) {
+        if let Some((_, image)) = self.images.first() {
+            enc.clear_image(image, [0.0; 4]);
+        }
+    }
+
     /// Accesses of its images.
     pub(crate) fn with(&self, access: Access) -> impl Iterator<Item = Use> {
         self.images.iter().map(move |(_, image)| image.with(access.in_general()))
@@ -287,6 +296,12 @@ impl Pyramids {
         self.step(level, [from, to], (coarser, level + 1))
     }
 
+    /// Push constants of a dispatch that reads the final samples of a level.
+    pub(super) fn final_step(&self, level: u32) -> Step {
+        let [_, last] = self.storage.push(level);
+        self.step(level, [last, last], (last, level))
+    }
+
     fn step(&self, level: u32, [from, to]: [usize; 2], (of_adjacent, adjacent): (usize, u32)) -> Step {
         let signed = |pair: [u32; 2]| pair.map(|value| value as i32);
         let origin = |pyramid: usize, level| signed(self.pyramids[pyramid].origin(level));
@@ -349,6 +364,11 @@ impl Pyramids {
     pub fn finest_level(variant: &Variant) -> [f64; 2] {
         let sample: u64 = WordFormat::of(variant).images().map(|i| pixel_bytes(FORMATS[i])).sum();
         finest_texels(variant).map(|texels| texels * sample as f64)
+    }
+
+    /// Bytes per pixel of what [`Pyramid::clear`] clears of the finest stored levels.
+    pub fn cleared(variant: &Variant) -> [f64; 2] {
+        finest_texels(variant).map(|texels| texels * pixel_bytes(FORMATS[0]) as f64)
     }
 
     /// Accesses of a pass that reads one pyramid and writes one.

@@ -6,6 +6,7 @@ use super::scene_resources::{InstanceRun, SceneResources};
 use super::splat_list::SplatList;
 use super::target_descriptions::is_cleared;
 use super::targets::RenderTargets;
+use super::tile_list::{PYRAMID_TILE, workgroups_at};
 use super::tile_rect::TileRect;
 use super::variant::{SceneVariant, Variant};
 use super::visible_clusters;
@@ -248,6 +249,7 @@ impl PreparedPass {
         }
         let workgroups = match domain {
             Domain::TileSlots => grid_over(u64::from(columns) * u64::from(rows)),
+            Domain::RowsOfPyramidTiles => grid_over(u64::from(PYRAMID_TILE) * targets.pyramid_tiles()),
             Domain::Blocks => grid_over_blocks(targets.size),
             Domain::Quads => grid_over_quads(targets.size),
             _ => grid_over_pixels(targets.size),
@@ -276,6 +278,16 @@ impl PreparedPass {
             if domain == Domain::Clusters {
                 let groups = grid_of(chunk_run.chunk.group_count);
                 enc.dispatch(pipeline, &sets, &chunk_run.chunk, groups);
+                continue;
+            }
+            if domain.tile_list() == Some(Resource::OccupiedTiles) {
+                let Some(list) = frame.targets.buffer(Resource::OccupiedTiles) else { continue };
+                // The list does not know how many instances there are.
+                for instance in 0..chunk_run.instances {
+                    let first_instance = chunk_run.chunk.first_instance + instance;
+                    let chunk = Chunk { first_instance, ..chunk_run.chunk };
+                    enc.dispatch_indirect(pipeline, &sets, &chunk, (list, workgroups_at(0)));
+                }
                 continue;
             }
             if domain == Domain::SurfelSlots {
@@ -398,6 +410,12 @@ impl<'a> StepContext<'a> {
         [self.frame.view, self.targets].into_iter().chain(pyramids).collect()
     }
 
+    /// Descriptor sets of a step that only reads one of the pyramids.
+    pub fn sets_to_read(&self, from: usize) -> Vec<&'a DescriptorSet> {
+        let pyramid = self.frame.targets.pyramids.as_ref().map(|pyramids| &pyramids.pyramids[from].read);
+        [self.frame.view, self.targets].into_iter().chain(pyramid).collect()
+    }
+
     /// Descriptor sets of shade, which only reads the pyramids.
     pub fn shade_sets(&self) -> Vec<&'a DescriptorSet> {
         let Some(pyramids) = &self.frame.targets.pyramids else { return Vec::new() };
@@ -442,7 +460,8 @@ impl Pass {
                 Resource::CoveredTiles
                 | Resource::OpenTiles
                 | Resource::EdgeTiles
-                | Resource::RevealedTiles => over(resource),
+                | Resource::RevealedTiles
+                | Resource::OccupiedTiles => over(resource),
                 _ => false,
             };
             (resource, if indirect { access.and_indirect() } else { access })

@@ -35,6 +35,10 @@ pub enum Resource {
     EdgeTiles,
     /// Tile path: the tiles that revealed clusters may change, after the workgroups of an indirect dispatch over them.
     RevealedTiles,
+    /// Pull–push: the tiles with a nearest point, after the workgroups of indirect dispatches over their pixels.
+    OccupiedTiles,
+    /// Pull–push: the tiles that push may fill, likewise.
+    FilledTiles,
     /// Mask of each pixel's covered samples, if α is coverage; in frames that mix edges also of those of the nearest surface.
     Coverage,
     /// Raster path: depth key of the surface behind in pixels at edges, moved back by ε.
@@ -87,6 +91,8 @@ impl Resource {
             Self::OpenTiles => "open tiles",
             Self::EdgeTiles => "edge tiles",
             Self::RevealedTiles => "revealed tiles",
+            Self::OccupiedTiles => "occupied tiles",
+            Self::FilledTiles => "filled tiles",
             Self::Coverage => "coverage",
             Self::Behind => "behind",
             Self::Nearest => "nearest",

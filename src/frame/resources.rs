@@ -238,7 +238,7 @@ impl FrameResources {
     /// Creates the pipelines of a frame, and of others that differ by camera, size and density only. Creates no other resources.
     pub fn make_pipelines(&mut self, frame: &Description) -> Result<()> {
         for (variant, scenes) in frame.choices() {
-            let list = self.pipelines.passes(&variant, scenes.len());
+            let list = self.pipelines.passes(&variant);
             self.pipelines.for_passes(&self.device, &list, &variant, &scenes)?;
         }
         Ok(())
@@ -474,7 +474,7 @@ impl FrameResources {
             Some(splats) => of_host.iter().copied().chain(splats.bindings(&current.variant)).collect(),
             None => of_host.to_vec(),
         };
-        let list = pipelines.passes(&current.variant, scenes.len());
+        let list = pipelines.passes(&current.variant);
         let same = of_splats
             && list.len() == current.passes.len()
             && list.iter().zip(&current.passes).all(|(pass, prepared)| std::ptr::eq(*pass, prepared.pass));

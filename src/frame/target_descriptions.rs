@@ -5,6 +5,7 @@ use super::resource::Resource;
 use super::targets::TILE;
 use super::tile_list;
 use super::variant::Variant;
+use crate::settings::pull_push::Storage;
 use crate::settings::splatting::Visibility;
 use crate::settings::{Precision, Rasterizer};
 use crate::vk::shaders::{self, resource};
@@ -33,6 +34,8 @@ pub enum Kind {
     Pixels(u64),
     /// A list of tiles.
     Tiles,
+    /// A list of pyramid tiles.
+    PyramidTiles,
 }
 
 /// Bytes per pixel of targets by name; fractions for values shared by several pixels.
@@ -67,6 +70,8 @@ impl Resource {
             Self::OpenTiles => &[&resource::OPEN_TILES],
             Self::EdgeTiles => &[&resource::EDGE_TILES],
             Self::RevealedTiles => &[&resource::REVEALED_TILES],
+            Self::OccupiedTiles => &[&resource::OCCUPIED_TILES],
+            Self::FilledTiles => &[&resource::FILLED_TILES],
             Self::Coverage => &[&resource::COVERAGE],
             Self::Behind => &[&resource::BEHIND_DEPTHS, &resource::BEHIND_IMAGE],
             Self::Nearest => &[&resource::NEAREST],
@@ -236,6 +241,8 @@ fn pull_push_targets(variant: &Variant) -> Vec<Option<TargetDescription>> {
         variant.has_compute_points().then_some(nearest),
         raster_target(Resource::NearestDepth, Format::D32_SFLOAT, &resource::NEAREST_DEPTH),
         raster_target(Resource::NearestId, Format::R32_UINT, &resource::NEAREST_ID),
+        Some(tile_list::OCCUPIED),
+        Some(tile_list::FILLED),
     ];
     points.into_iter().chain(stored_outputs(variant)).collect()
 }
@@ -267,6 +274,8 @@ pub fn is_cleared(resource: Resource, variant: &Variant) -> bool {
     match resource {
         // Of the image, the filter reads covered tiles alone.
         Resource::Image => !variant.lists_tiles() || variant.filter_radius == 0,
+        // Pyramids that alternate by level are one, which has the pulled samples.
+        Resource::Pushed => variant.pull_push.is_some_and(|pull_push| pull_push.storage == Storage::Apart),
         // Dispatches over all tiles write all of them.
         Resource::Visibility | Resource::Coverage if variant.is_tiled() => {
             variant.lists_tiles() || variant.sliced
@@ -282,6 +291,9 @@ pub fn pixel_size(target: &TargetDescription) -> f64 {
         Kind::Halved(_) => pixel_bytes(target.format) as f64 / 4.0,
         Kind::Pixels(bytes) => bytes as f64,
         Kind::Tiles => tile_list::ENTRY as f64 / f64::from(TILE * TILE),
+        Kind::PyramidTiles => {
+            tile_list::ENTRY as f64 / f64::from(tile_list::PYRAMID_TILE * tile_list::PYRAMID_TILE)
+        }
     }
 }
 

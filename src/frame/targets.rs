@@ -59,7 +59,7 @@ pub fn coverage_fits(capabilities: &Capabilities, size: [u32; 2]) -> bool {
 pub fn targets_fit(capabilities: &Capabilities, size: [u32; 2], variant: &Variant) -> bool {
     let bytes_of = |target: TargetDescription| match target.kind {
         Kind::Pixels(bytes) => bytes,
-        Kind::Image(_) | Kind::Halved(_) | Kind::Tiles => 0,
+        Kind::Image(_) | Kind::Halved(_) | Kind::Tiles | Kind::PyramidTiles => 0,
     };
     let most = describe(variant).into_iter().map(bytes_of).max().unwrap_or(0);
     most * pixels_of(size) <= capabilities.max_storage_buffer_range
@@ -73,6 +73,11 @@ pub fn pixels_of(size: [u32; 2]) -> u64 {
 /// Columns and rows of tiles of a picture.
 fn tiles_of(size: [u32; 2]) -> [u32; 2] {
     size.map(|side| side.div_ceil(TILE))
+}
+
+/// Number of pyramid tiles of a picture.
+fn pyramid_tiles_of(size: [u32; 2]) -> u64 {
+    pixels_of(size.map(|side| side.div_ceil(tile_list::PYRAMID_TILE)))
 }
 
 /// Rejects sizes beyond the limits of `device`.
@@ -105,7 +110,12 @@ impl RenderTargets {
                     Memory::Buffer(Buffer::storage(device, name, bytes * pixels_of(size))?)
                 }
                 Kind::Tiles => {
-                    let bytes = tile_list::bytes(pixels_of(tiles_of(size)));
+                    let bytes = tile_list::bytes(tile_list::HEADER, pixels_of(tiles_of(size)));
+                    Memory::Buffer(Buffer::indirect(device, name, bytes)?)
+                }
+                Kind::PyramidTiles => {
+                    let tiles = tile_list::with_padding(pyramid_tiles_of(size));
+                    let bytes = tile_list::bytes(tile_list::PYRAMID_HEADER, tiles);
                     Memory::Buffer(Buffer::indirect(device, name, bytes)?)
                 }
             };
@@ -184,20 +194,28 @@ impl RenderTargets {
         pyramid.into_iter().flat_map(move |pyramid| pyramid.with(access))
     }
 
-    /// Clears a target, if it exists: the final image to the background, nearest points to ones, others to zeros.
+    /// Clears a target, if it exists: the final image to the background, nearest points and ids to ones, others to zeros.
     pub fn clear(&self, enc: &mut Encoder<'_, '_>, resource: Resource, background: [f32; 4]) {
         match (self.find(resource).map(|(_, memory)| memory), resource) {
             (Some(Memory::Image(image)), _) if resource == self.final_image() => {
                 enc.clear_image(image, background);
             }
+            (Some(Memory::Image(image)), Resource::Id) => enc.clear_image_to_ones(image),
             (Some(Memory::Image(image)), _) => enc.clear_image(image, [0.0; 4]),
             (Some(Memory::Buffer(buffer)), Resource::Nearest) => enc.ones(buffer),
             // Its pass writes the tiles.
             (Some(Memory::Buffer(buffer)), Resource::CoveredTiles) => {
                 enc.zero_range(buffer, 0, tile_list::HEADER);
             }
+            (Some(Memory::Buffer(buffer)), Resource::OccupiedTiles | Resource::FilledTiles) => {
+                enc.zero_range(buffer, 0, tile_list::PYRAMID_HEADER);
+                enc.ones_from(buffer, tile_list::PYRAMID_HEADER);
+            }
             (Some(Memory::Buffer(buffer)), _) => enc.zero(buffer),
-            (None, _) => {}
+            (None, _) => {
+                let pyramid = self.pyramids.as_ref().and_then(|pyramids| pyramids.of(resource));
+                pyramid.into_iter().for_each(|pyramid| pyramid.clear(enc));
+            }
         }
     }
 
@@ -232,6 +250,11 @@ impl RenderTargets {
     /// Columns and rows of tiles.
     pub fn tiles(&self) -> [u32; 2] {
         tiles_of(self.size)
+    }
+
+    /// Number of pyramid tiles.
+    pub fn pyramid_tiles(&self) -> u64 {
+        pyramid_tiles_of(self.size)
     }
 
     /// All targets.

@@ -44,7 +44,7 @@ impl PassTraffic {
         let variant = Variant::new(&[*scene], perspective, settings, options, rasterizer);
         let of_scene = SceneVariant::new(variant, *scene, false);
         let mut list: Vec<Self> = Vec::new();
-        for pass in passes(&variant, Path::of(&variant), 1) {
+        for pass in passes(&variant, Path::of(&variant)) {
             for found in [cleared(pass, &variant), declared(pass, &of_scene, scene)] {
                 match list.iter_mut().find(|known| known.name == found.name) {
                     Some(known) => known.add(&found),
@@ -70,7 +70,12 @@ fn cleared(pass: &Pass, variant: &Variant) -> PassTraffic {
     // Of that list, only the length is.
     let is_list = |resource: &Resource| *resource == Resource::CoveredTiles;
     let cleared = pass.clears.iter().filter(|resource| !is_list(resource) && is_cleared(**resource, variant));
-    let pixel = cleared.map(|resource| per_pixel(*resource, variant)).sum();
+    let of = |resource: &Resource| match (resource, variant.pull_push) {
+        (Resource::Pulled, Some(_)) => Pyramids::cleared(variant)[0],
+        (Resource::Pushed, Some(_)) => Pyramids::cleared(variant)[1],
+        _ => per_pixel(*resource, variant),
+    };
+    let pixel = cleared.map(of).sum();
     PassTraffic { name: "clear", pixel, ..PassTraffic::default() }
 }
 
@@ -111,6 +116,10 @@ fn declared(pass: &Pass, variant: &SceneVariant, scene: &Streams) -> PassTraffic
             target.resource == *resource && matches!(target.kind, Kind::Image(_) | Kind::Halved(_))
         })
     };
+    // These have a sixty-fourth of the pixels.
+    if over(&[Domain::CoarseLevels]) {
+        all.retain(|resource| !matches!(resource, Resource::Pulled | Resource::Pushed));
+    }
     let writes_image = pass.writes.iter().chain(&attached).any(is_image);
     let projects = over_surfels && pass.writes.contains(&Resource::Nearest);
     PassTraffic {
@@ -201,7 +210,12 @@ mod tests {
         let project = named(&passes, "project");
         // Positions and normals; a distance and an id a pixel.
         assert_eq!((project.surfel, project.pixel, project.atomics), (24.0, 8.0, 1.0));
-        assert_eq!(named(&passes, "clear").pixel, 8.0);
+        // These, four words of a pulled and of a quarter of a pushed sample, the picture, and two lists of eight bytes a tile.
+        assert_eq!(named(&passes, "clear").pixel, 8.0 + 16.0 + 4.0 + 16.0 + 2.0 * 8.0 / 256.0);
+        // The pulled and the pushed samples of a pixel, and a list, or both lists.
+        let [samples, list] = [36.0 + 9.0, 8.0 / 256.0];
+        assert_eq!(named(&passes, "push").pixel, samples + 2.0 * list);
+        assert_eq!(named(&passes, "filled").pixel, 2.0 * list);
         assert!(passes.iter().filter(|pass| pass.name != "project").all(|pass| pass.atomics == 0.0));
         assert!(passes.iter().all(|pass| pass.surfel >= 0.0 && pass.pixel >= 0.0));
     }

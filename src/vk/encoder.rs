@@ -145,10 +145,19 @@ impl<'r, 'a> Encoder<'r, 'a> {
 
     /// Fills an image with `colour`. It has usage [`super::ImageUse::StoredOutput`], and the layout of its accesses in shaders.
     pub fn clear_image(&mut self, image: &Image, colour: [f32; 4]) {
-        let (layout, colour) = (vk::ImageLayout::GENERAL, vk::ClearColorValue { float32: colour });
+        self.clear_image_to(image, vk::ClearColorValue { float32: colour });
+    }
+
+    /// Fills an image of unsigned integers with 1 bits, like [`Encoder::clear_image`].
+    pub fn clear_image_to_ones(&mut self, image: &Image) {
+        self.clear_image_to(image, vk::ClearColorValue { uint32: [u32::MAX; 4] });
+    }
+
+    fn clear_image_to(&mut self, image: &Image, colour: vk::ClearColorValue) {
         // SAFETY: recorded outside a render pass; the pass's uses brought the image, which is alive and can be copied to, into this layout.
         unsafe {
             let (raw, cmd) = (self.raw(), self.rec.cmd);
+            let layout = vk::ImageLayout::GENERAL;
             raw.cmd_clear_color_image(cmd, image.raw, layout, &colour, &[image.range()]);
         }
     }
@@ -160,8 +169,14 @@ impl<'r, 'a> Encoder<'r, 'a> {
 
     /// Fills `buffer` with 1 bits.
     pub fn ones(&mut self, buffer: &Buffer) {
+        self.ones_from(buffer, 0);
+    }
+
+    /// Fills `buffer` with 1 bits from byte `offset` on, a multiple of 4.
+    pub fn ones_from(&mut self, buffer: &Buffer, offset: u64) {
+        assert!(offset < buffer.size(), "a fill past the end of a buffer");
         // SAFETY: recorded outside a render pass; the buffer is alive and can be copied to.
-        unsafe { self.raw().cmd_fill_buffer(self.rec.cmd, buffer.raw, 0, vk::WHOLE_SIZE, u32::MAX) };
+        unsafe { self.raw().cmd_fill_buffer(self.rec.cmd, buffer.raw, offset, vk::WHOLE_SIZE, u32::MAX) };
     }
 
     /// Fills `size` bytes of `buffer` from `offset` on with 0; both are multiples of 4.

@@ -22,7 +22,7 @@ pub enum ImageUse {
     StoredOutput,
     /// A picture that is drawn, and then loaded by compute shaders.
     FilteredOutput,
-    /// Written and fetched by compute shaders in parts, in `GENERAL` layout ([`super::Access::in_general`]).
+    /// Cleared, written and fetched by compute shaders in parts, in `GENERAL` layout ([`super::Access::in_general`]).
     Stored,
 }
 
@@ -80,10 +80,10 @@ impl Image {
             }
             #[cfg(feature = "window")]
             ImageUse::Window => vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST,
-            ImageUse::Output | ImageUse::Stored | ImageUse::FilteredOutput => {
+            ImageUse::Output | ImageUse::FilteredOutput => {
                 vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::SAMPLED
             }
-            ImageUse::StoredOutput => {
+            ImageUse::Stored | ImageUse::StoredOutput => {
                 vk::ImageUsageFlags::TRANSFER_SRC
                     | vk::ImageUsageFlags::TRANSFER_DST
                     | vk::ImageUsageFlags::SAMPLED

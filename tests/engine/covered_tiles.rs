@@ -99,6 +99,7 @@ fn nothing_of_earlier_frames_is_left() {
         ("mask", Settings { alpha: Alpha::Mask, ..lit.clone() }),
         ("background", Settings { background, ..lit.clone() }),
         ("unfiltered", Settings { background, ..unfiltered.clone() }),
+        ("pull-push", Settings { background, ..Method::named("pull-push").unwrap().settings() }),
         ("eye-dome lighting", Settings { shading: Shading::Edl, background, ..lit.clone() }),
         ("nearest", Settings { background, ..Method::named("sprites-unfiltered").unwrap().settings() }),
         ("both sides", Settings { cull: Cull::None, background, ..unfiltered.clone() }),
@@ -106,8 +107,17 @@ fn nothing_of_earlier_frames_is_left() {
         ("ambient occlusion", Settings { ao: 1.0, ..lit.clone() }),
         ("default", lit),
         ("splats alone", splats_alone()),
+        (
+            "coverage by pull-push",
+            Settings { alpha: Alpha::Coverage, ..Method::named("pull-push").unwrap().settings() },
+        ),
+        ("pull-push-paper", Method::named("pull-push-paper").unwrap().settings()),
+        (
+            "eye-dome lighting by pull-push",
+            Settings { shading: Shading::Edl, background, ..Method::named("pull-push").unwrap().settings() },
+        ),
     ];
-    for (name, settings) in &all[..if_whole(all.len(), 5)] {
+    for (name, settings) in &all[..if_whole(all.len(), 6)] {
         let render = |renderer: &mut Renderer, at: [f64; 3]| {
             let instances = [Instance { scene: scene.clone(), transform: placed(0.5, at) }];
             renderer.render_picture(&instances[..], &camera(size), settings).unwrap().0

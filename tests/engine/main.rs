@@ -49,6 +49,7 @@ mod pull_push_lines;
 mod pull_push_points;
 mod pull_push_sizes;
 mod pull_push_surfaces;
+mod pull_push_tiles;
 mod quantized;
 mod rasterizers;
 mod reference;

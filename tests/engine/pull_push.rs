@@ -291,7 +291,11 @@ fn passes_and_targets_match_the_plan() {
             let report = renderer.render(&scene, &truth.camera(), &settings).unwrap();
             let plan = FramePlan::new(&[scene.streams()], true, &settings, &options, rasterizer);
             let timed = report.pass_times.iter().map(|time| time.label).filter(|label| *label != "clear");
-            assert_eq!(timed.collect::<Vec<_>>(), plan.passes);
+            // The last steps of push have its timer.
+            let planned = plan.passes.iter().enumerate();
+            let planned =
+                planned.filter(|(i, name)| !plan.passes[..*i].contains(name)).map(|(_, name)| *name);
+            assert_eq!(timed.collect::<Vec<_>>(), planned.collect::<Vec<_>>());
             let planned = plan.targets;
             for (target, (name, bytes)) in renderer.targets().iter().zip(&planned) {
                 let [made, planned] = [target.bytes as f64, bytes * 1e4];

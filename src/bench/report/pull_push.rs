@@ -15,7 +15,7 @@ const METHODS: [Method; 2] = [pull_push::METHOD, pull_push::PAPER];
 /// The passes over pixels.
 const OVER_PIXELS: [&str; 3] = ["pull", "copy", "push"];
 /// The passes of pull–push.
-const PASSES: [&str; 6] = ["project", "fetch", "pull", "copy", "push", "shade"];
+const PASSES: [&str; 8] = ["project", "occupied", "fetch", "pull", "copy", "push", "filled", "shade"];
 
 /// A plot per method, with its evaluation.
 pub fn plots(page: &mut Page<'_>, session: &Session) -> io::Result<Vec<Markup>> {

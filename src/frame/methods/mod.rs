@@ -29,11 +29,11 @@ pub enum Path {
     Subpasses { seed: bool },
 }
 
-/// Passes of a frame of `variant` with so many scenes, in order; in subpasses of a host, raster passes are last, and none needs
+/// Passes of a frame of `variant`, in order; in subpasses of a host, raster passes are last, and none needs
 /// neighbours: no ambient occlusion, no eye-dome lighting, and pixels are not filtered. Frames by tiles first sort surfels in arbitrary order, and cull clusters of surfels with known bounds.
-pub fn passes(variant: &Variant, path: Path, scenes: usize) -> Vec<&'static Pass> {
+pub fn passes(variant: &Variant, path: Path) -> Vec<&'static Pass> {
     let mut list = match (variant.pull_push, variant.visibility) {
-        (Some(settings), _) => pull_push::passes(variant, settings.storage, scenes),
+        (Some(settings), _) => pull_push::passes(variant, settings.storage),
         (None, Visibility::Nearest) => nearest::passes(path, variant),
         (None, Visibility::Ray | Visibility::Axis) => blended::passes(path, variant),
     };

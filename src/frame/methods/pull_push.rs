@@ -7,6 +7,9 @@
 //! picture ← shade ← 0 ← push ← 1 ← push ← … ← push     holes filled, hidden points replaced, coarse to fine
 //! ```
 //!
+//! On levels 0 to 2 they run over tiles, of 16 × 16 px: `occupied` lists those that have points, for fetch and pull; `filled`, once push has come
+//! to level 3, those that may be filled, for push and shade. Before, all samples and the picture are made empty.
+//!
 //! Push reads the pulled samples of a level and the final ones of the coarser level. `pull-push` stores these in two pyramids.
 //! `pull-push-paper` alternates as published (§3.5, figure 7): each level is in the pyramid of its parity.
 //!
@@ -17,12 +20,15 @@
 //! ```
 
 use crate::frame::pass::Pass;
-use crate::frame::passes::{copy::COPY, fetch, project, pull::PULL, push::PUSH, shade::SHADE};
+use crate::frame::passes::{
+    copy::COPY, fetch::FETCH, filled::FILLED, occupied::OCCUPIED, pull::PULL, shade::SHADE,
+};
+use crate::frame::passes::{project, push};
 use crate::frame::variant::Variant;
 use crate::settings::pull_push::Storage;
 
 /// The passes with this storage of levels.
-pub fn passes(variant: &Variant, storage: Storage, scenes: usize) -> Vec<&'static Pass> {
+pub fn passes(variant: &Variant, storage: Storage) -> Vec<&'static Pass> {
     let project: &[&Pass] = match (variant.has_raster_points(), variant.primitives) {
         (false, false) => &[&project::COMPUTE],
         (false, true) => &[&project::COMPUTE, &project::LARGE],
@@ -32,10 +38,9 @@ pub fn passes(variant: &Variant, storage: Storage, scenes: usize) -> Vec<&'stati
             &[&project::RASTER, &project::COPY_RASTER_POINTS, &project::PRIMITIVES, &project::LARGE]
         }
     };
-    let fetch = if scenes == 0 { &fetch::EMPTY } else { &fetch::FETCH };
     let copy: &[&Pass] = match storage {
         Storage::Apart => &[],
         Storage::PingPong => &[&COPY],
     };
-    [project, &[fetch, &PULL], copy, &[&PUSH, &SHADE]].concat()
+    [project, &[&OCCUPIED, &FETCH, &PULL], copy, &[&push::COARSE, &FILLED, &push::FINE, &SHADE]].concat()
 }

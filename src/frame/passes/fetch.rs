@@ -1,17 +1,15 @@
 //! Fetch: nearest point of each pixel → its sample (marroquim2008 §3.1; `fetch.glsl`).
 
 use crate::frame::pass::{Commands, Domain, Pass, Program, Programs};
-use crate::frame::resource::Resource::{Nearest, NearestId, Pulled};
+use crate::frame::resource::Resource::{Nearest, NearestId, OccupiedTiles, Pulled};
 use crate::vk::shaders::{
-    FETCH_COMPUTE, FETCH_EMPTY_COMPUTE, FETCH_LINES_COMPUTE, FETCH_RASTER_POINTS_COMPUTE,
-    FETCH_TRIANGLES_COMPUTE,
+    FETCH_COMPUTE, FETCH_LINES_COMPUTE, FETCH_RASTER_POINTS_COMPUTE, FETCH_TRIANGLES_COMPUTE,
 };
 
-/// One invocation per pixel, for each chunk of a scene. Chunks write disjoint pixels, so their order is free; the first chunk of the first
-/// scene clears empty pixels. With lines or triangles, rasterized points have been copied to the nearest points.
+/// One invocation per pixel of occupied tiles, for each chunk of a scene. Chunks write disjoint pixels, so their order is free. With lines or triangles, rasterized points have been copied to the nearest points.
 pub static FETCH: Pass = Pass {
     name: "fetch",
-    reads: &[Nearest, NearestId],
+    reads: &[Nearest, NearestId, OccupiedTiles],
     writes: &[Pulled],
     clears: &[],
     programs: Programs::OfScene(|variant| {
@@ -23,15 +21,5 @@ pub static FETCH: Pass = Pass {
         let surfels = std::iter::once(Program::compute(surfels, Domain::PixelsOfSurfels));
         surfels.chain(kinds.lines.then_some(lines)).chain(kinds.triangles.then_some(triangles)).collect()
     }),
-    commands: Commands::Dispatches,
-};
-
-/// Clears level 0 in frames without scenes.
-pub static EMPTY: Pass = Pass {
-    name: "fetch",
-    reads: &[],
-    writes: &[Pulled],
-    clears: &[],
-    programs: Programs::OfFrame(|_| vec![Program::compute(&FETCH_EMPTY_COMPUTE, Domain::Pixels)]),
     commands: Commands::Dispatches,
 };

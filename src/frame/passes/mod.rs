@@ -12,12 +12,14 @@ pub mod covered;
 pub mod cull;
 pub mod edl;
 pub mod fetch;
+pub mod filled;
 pub mod filter;
 pub mod footprint;
 pub mod hidden;
 pub mod nearest;
 pub mod normalize;
 pub mod occlusion;
+pub mod occupied;
 pub mod open;
 pub mod order;
 pub mod project;
@@ -82,7 +84,7 @@ mod tests {
                         edl: count,
                         ..variant.frame
                     };
-                    for pass in paths.iter().flat_map(|path| passes(&frame, *path, 1)) {
+                    for pass in paths.iter().flat_map(|path| passes(&frame, *path)) {
                         if !all.iter().any(|known| std::ptr::eq(*known, pass)) {
                             all.push(pass);
                         }
@@ -94,7 +96,7 @@ mod tests {
         all
     }
 
-    const RESOURCES: [Resource; 31] = [
+    const RESOURCES: [Resource; 33] = [
         Resource::VisibleClusters,
         Resource::Order,
         Resource::Splats,
@@ -112,6 +114,8 @@ mod tests {
         Resource::Nearest,
         Resource::EdgeTiles,
         Resource::RevealedTiles,
+        Resource::OccupiedTiles,
+        Resource::FilledTiles,
         Resource::HiddenClusters,
         Resource::Behind,
         Resource::NearestDepth,
@@ -211,7 +215,8 @@ mod tests {
                     ));
                 }
             }
-            assert!(pass.clears.iter().all(|cleared| pass.writes.contains(cleared)), "{}", pass.name);
+            let is_written = |cleared: &Resource| all().iter().any(|pass| pass.writes.contains(cleared));
+            assert!(pass.clears.iter().all(is_written), "{}", pass.name);
         }
         assert!(wrong.is_empty(), "{wrong:#?}");
     }

@@ -18,9 +18,9 @@ pub enum Unit {
     Selection,
 }
 
-/// Passes before pull, and passes of pull–push.
-pub(super) const PROJECTION: &[&str] = &["clear", "project", "fetch"];
-pub(super) const PULL_PUSH: &[&str] = &["pull", "copy", "push"];
+/// Passes before pull, with all clears, and passes of pull–push.
+pub(super) const PROJECTION: &[&str] = &["clear", "project", "occupied", "fetch"];
+pub(super) const PULL_PUSH: &[&str] = &["pull", "copy", "push", "filled"];
 /// The pass that divides by the sum of the weights.
 const NORMALIZE: &[&str] = &["normalize"];
 
