@@ -75,18 +75,29 @@ uint digit_of(uint code) {
 
 #if defined(TOTALS) || defined(SCAN)
 
+// Invocations whose values are added up first.
+const uint GROUP = 8, GROUPS = gl_WorkGroupSize.x / GROUP;
+
 shared uint sums[gl_WorkGroupSize.x];
+shared uint group_sums[GROUPS];
 
 // Sum of the values of the workgroup's invocations; of those before this one, in `before`.
 uint workgroup_sum(uint value, out uint before) {
-    uint lane = gl_LocalInvocationIndex, sum = 0;
+    uint lane = gl_LocalInvocationIndex, group = lane / GROUP, of_group = 0, sum = 0;
     barrier();
     sums[lane] = value;
     barrier();
     before = 0;
-    for (uint k = 0; k < gl_WorkGroupSize.x; k++) {
-        before += k < lane ? sums[k] : 0;
-        sum += sums[k];
+    for (uint k = 0; k < GROUP; k++) {
+        uint other = sums[GROUP * group + k];
+        of_group += other;
+        before += k < lane % GROUP ? other : 0;
+    }
+    if (lane % GROUP == 0) group_sums[group] = of_group;
+    barrier();
+    for (uint k = 0; k < GROUPS; k++) {
+        sum += group_sums[k];
+        before += k < group ? group_sums[k] : 0;
     }
     return sum;
 }
