@@ -113,6 +113,7 @@ fn a_summary_is_printed_unless_quiet() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn a_single_pixel_and_a_single_row_are_pictures() {
     let Some(program) = Program::with_device("a_single_pixel_and_a_single_row_are_pictures") else { return };
     for (size, width, height) in [("1x1", 1, 1), ("300x1", 300, 1), ("1x300", 1, 300)] {

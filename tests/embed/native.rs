@@ -79,6 +79,7 @@ fn subpasses_draw_the_engines_own_picture_bit_for_bit() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn clips_coverage_normals_and_parallel_rays_are_the_engines_own_too() {
     let Some(host) = open(|all| all) else { return };
     let mut random = Random(11);

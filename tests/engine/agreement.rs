@@ -341,6 +341,7 @@ fn failures(cases: &[Case], views: &Views, how: &str) -> Vec<String> {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn small_mutations_fail() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let renderers = Renderers::new(&device);

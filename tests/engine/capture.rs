@@ -219,6 +219,7 @@ fn weights_even_out_the_sums_by_either_rasterizer() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn what_no_view_sees_is_computed() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let mut surfels = bumpy_sphere::sample(3_000, 1);

@@ -134,6 +134,7 @@ fn nothing_of_earlier_frames_is_left() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn nothing_of_earlier_frames_is_left_by_slices() {
     let Some(device) = device(DeviceLimits { limited_loops: Some(true), ..Default::default() }) else {
         return;

@@ -45,6 +45,7 @@ fn covered(picture: &Picture) -> usize {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn closed_surfaces_are_culled_and_open_ones_are_not() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let closed = scenes::open("scene:bumpy-sphere?points=20000").unwrap();

@@ -123,6 +123,7 @@ fn a_file_with_triangles_is_compared_with_them() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn triangles_are_read_when_they_are_needed() {
     let Some((display, program)) = setup("triangles_are_read_when_they_are_needed") else { return };
     program.write("mesh.ply", sphere(1));

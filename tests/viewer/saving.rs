@@ -75,6 +75,7 @@ fn picture_size(event: &Value) -> [u32; 2] {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn the_first_colours_are_those_of_the_command_line() {
     let Some((display, program)) = setup("the_first_colours_are_those_of_the_command_line") else { return };
     let mut text = String::from(
@@ -165,6 +166,7 @@ fn rgb(pixel: &image::Rgba<u8>) -> [u8; 3] {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn cameras_come_back_from_files_and_from_the_clipboard() {
     let Some((display, program)) = setup("cameras_come_back_from_files_and_from_the_clipboard") else {
         return;

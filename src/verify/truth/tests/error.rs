@@ -30,6 +30,7 @@ fn differences(a: &Picture, b: &Picture) -> Vec<f64> {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn the_stated_error_is_honest() {
     for filter in [GAUSSIAN, Filter::Box] {
         for name in ["scene:tree", "scene:bumpy-sphere", "scene:plane", "scene:part"] {
