@@ -155,7 +155,7 @@ pub enum Domain {
     RevealedTiles,
     /// Elements of a level, as the steps of the pass define.
     Level,
-    /// The same of levels that have few: from the third on.
+    /// The same of levels from 3 on, which have few.
     CoarseLevels,
     /// One triangle per splat.
     SplatTriangles,

@@ -6,7 +6,8 @@ use crate::vk::shaders::{
     FETCH_COMPUTE, FETCH_LINES_COMPUTE, FETCH_RASTER_POINTS_COMPUTE, FETCH_TRIANGLES_COMPUTE,
 };
 
-/// One invocation per pixel of occupied tiles, for each chunk of a scene. Chunks write disjoint pixels, so their order is free. With lines or triangles, rasterized points have been copied to the nearest points.
+/// One invocation per pixel of occupied tiles, for each chunk of a scene. Chunks write disjoint pixels, so their order is free. With lines or
+/// triangles, rasterized points have been copied to the nearest points.
 pub static FETCH: Pass = Pass {
     name: "fetch",
     reads: &[Nearest, NearestId, OccupiedTiles],
