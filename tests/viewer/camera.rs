@@ -13,7 +13,6 @@ fn wall() -> String {
 }
 
 #[test]
-#[ignore = "the window sometimes misses the wheel under load: tools/test --all"]
 fn the_wheel_zooms_to_the_surface_under_the_cursor() {
     let Some((display, program)) = setup("the_wheel_zooms_to_the_surface_under_the_cursor") else { return };
     program.write("wall.ply", wall());
@@ -21,15 +20,16 @@ fn the_wheel_zooms_to_the_surface_under_the_cursor() {
     let mut view =
         View::open(&display, &program, "wall.ply --size 400x300 --fresh --eye 0,0,8 --target 0,0,6");
     let far = |event: &serde_json::Value| event["camera"]["eye"][2].as_f64().unwrap();
-    view.picture(|event| event["preview"] == false && far(event) == 8.0);
-    let mut before = 8.0;
+    let mut last = view.picture(|event| event["preview"] == false && far(event) == 8.0);
     for _ in 0..8 {
         display.click(view.window, [200, 150], 4, 3);
-        before = far(&view.picture(|event| far(event) < before));
+        last = view.picture(|event| far(event) < far(&last));
     }
-    let after = view.picture(|event| event["moving"] == false);
+    // On a busy machine pictures in motion are not whole ones, and the loop may have had the last at rest.
+    let is_near = |event: &serde_json::Value| event["moving"] == false && far(event) < 0.3;
+    let after = if is_near(&last) { last } else { view.picture(is_near) };
     // 24 steps, or twice as many where the server reports each twice.
-    assert!((1e-3..0.3).contains(&far(&after)), "{after}");
+    assert!(far(&after) > 1e-3, "{after}");
     view.close();
 }
 
