@@ -59,12 +59,14 @@ void main() {
 
 #include "lib/surfel_attributes.glsl"
 #include "lib/surfel_weights.glsl"
+#include "lib/surfel_normal_field.glsl"
 
 layout(location = 4) flat out float height;
 layout(location = 5) flat out vec3 attribute0;
 layout(location = 6) flat out vec3 attribute1;
 layout(location = 7) flat out vec4 corners;
 layout(location = 8) flat out vec4 square;
+layout(location = 14) flat out vec4 field_row;
 
 void main() {
     uint i = surfel_index();
@@ -76,16 +78,20 @@ void main() {
     if (!OVERLAP) height *= amplitude_of(splat, variance);
     square = vec4(axes[0], axes[1]);
     surfel_attributes(i, splat.epsilon, attribute0, attribute1);
+    if (FRAME_NORMAL_FIELDS) field_row = stored_field(attribute0, normal_field(i, splat));
 }
 
 #endif
 #ifdef FRAGMENT
+
+#include "lib/normal_field.glsl"
 
 layout(location = 4) flat in float height;
 layout(location = 5) flat in vec3 attribute0;
 layout(location = 6) flat in vec3 attribute1;
 layout(location = 7) flat in vec4 corners;
 layout(location = 8) flat in vec4 square;
+layout(location = 14) flat in vec4 field_row;
 
 #ifdef BEHIND
 layout(set = 1, binding = 9) uniform texture2D visibility_image;
@@ -104,7 +110,9 @@ void main() {
     float weight = OVERLAP ? 1.0 : height * kernel(dot(m, m));
     if (CORNERS && !OVERLAP) weight *= bilinear_weight(corners, mat2(square.xy, square.zw), m);
     gl_FragDepth = ranked(key, rank);
-    sum0 = weight * vec4(1.0, attribute0);
+    vec3 value = attribute0;
+    if (FRAME_NORMAL_FIELDS) value = normal_at(attribute0, field_of(attribute0, field_row), m);
+    sum0 = weight * vec4(1.0, value);
     sum1 = weight * vec4(SUM_DEPTH ? frame.key_gain * key : 0.0, attribute1);
 }
 

@@ -17,6 +17,7 @@
 #include "lib/sums.glsl"
 #include "lib/surfel_attributes.glsl"
 #include "lib/surfel_weights.glsl"
+#include "lib/surfel_normal_field.glsl"
 #include "lib/attributes.glsl"
 #else
 #include "lib/surfel_normal.glsl"
@@ -25,6 +26,7 @@
 #include "lib/order.glsl"
 #include "lib/image.glsl"
 #include "lib/pixel_row.glsl"
+#include "lib/tangents.glsl"
 
 #ifdef COMPUTE
 
@@ -44,20 +46,6 @@ const float LEAST_CLEARANCE = 1e-3;
 const float LEAST_AREA = 1e-30;
 // Largest variance, px².
 const float LARGEST_VARIANCE = 1e30;
-
-// Two unit vectors that complete n to a right-handed basis (Duff et al. 2017).
-mat2x3 tangents(vec3 n) {
-    float s = n.z >= 0.0 ? 1.0 : -1.0;
-    float a = -1.0 / (s + n.z);
-    float b = n.x * n.y * a;
-    return mat2x3(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y));
-}
-
-// Axes of an elliptical disc whose longer semi-axis is 1. They are orthogonal to n even if the stored shape is rounded.
-mat2x3 ellipse_axes(vec3 n, vec4 shape) {
-    vec3 minor = normalize(cross(n, shape.xyz));
-    return mat2x3(cross(minor, n), shape.w * minor);
-}
 
 // κ of the plane n·x = h at the anchor, and its derivatives. At grazing angles κ is a small difference of large terms.
 mat2x3 depth_plane(vec3 n, vec2 h, vec2 facing, vec2 anchor) {
@@ -279,6 +267,7 @@ void store_attributes(uint entry, uint i, Splat splat) {
     surfel_attributes(i, splat.epsilon, attribute0, attribute1);
     if (WIDE_SUMS0 || FRAME_WEIGHTS) splat_attributes[k] = vec4(attribute0, weight);
     if (WIDE_SUMS1) splat_attributes[k + 1] = vec4(attribute1, 0.0);
+    if (FRAME_NORMAL_FIELDS) splat_attributes[k + FIELD_ROW] = stored_field(attribute0, normal_field(i, splat));
     if (FRAME_CORNERS) {
         splat_attributes[k + ATTRIBUTE_ROWS - 2] = corners;
         splat_attributes[k + ATTRIBUTE_ROWS - 1] = vec4(square[0], -square[1].x * square[0].y + square[1].y * square[0].x, 0.0);

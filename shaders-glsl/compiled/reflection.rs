@@ -35,8 +35,8 @@ pub static ATTRIBUTE_VERTEX: Module = Module {
     name: "attribute_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("attribute_vertex.spv"),
-    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 22, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70, 78, 79],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::WEIGHTS, false)],
+    constants: &[0, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 22, 26, 27, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 67, 70, 78, 79, 83, 84],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::WEIGHTS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -45,7 +45,7 @@ pub static ATTRIBUTE_FRAGMENT: Module = Module {
     name: "attribute_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("attribute_fragment.spv"),
-    constants: &[0, 4, 15, 16, 19, 27, 70, 79],
+    constants: &[0, 4, 15, 16, 19, 27, 70, 79, 83],
     resources: &[(&resource::FRAME, false)],
     push: 0,
 };
@@ -55,7 +55,7 @@ pub static ATTRIBUTE_COMPUTE: Module = Module {
     name: "attribute_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("attribute_compute.spv"),
-    constants: &[0, 3, 4, 14, 15, 16, 17, 19, 23, 24, 44, 45, 46, 47, 67, 70, 79, 82],
+    constants: &[0, 3, 4, 14, 15, 16, 17, 19, 23, 24, 44, 45, 46, 47, 67, 70, 79, 82, 83],
     resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, false), (&resource::SUMS0, true), (&resource::SUMS1, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -65,8 +65,8 @@ pub static ATTRIBUTE_CLIP_LINES_VERTEX: Module = Module {
     name: "attribute_clip_lines_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("attribute_clip_lines_vertex.spv"),
-    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 22, 23, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58, 67, 70, 78, 79],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false), (&resource::WEIGHTS, false)],
+    constants: &[0, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 22, 23, 26, 27, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 67, 70, 78, 79, 83, 84],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::WEIGHTS, false)],
     push: size_of::<layout::Chunk>() as u32,
 };
 
@@ -75,7 +75,7 @@ pub static ATTRIBUTE_CLIP_LINES_FRAGMENT: Module = Module {
     name: "attribute_clip_lines_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("attribute_clip_lines_fragment.spv"),
-    constants: &[0, 4, 15, 16, 19, 23, 24, 27, 70, 79],
+    constants: &[0, 4, 15, 16, 19, 23, 24, 27, 70, 79, 83],
     resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false)],
     push: 0,
 };
@@ -85,7 +85,7 @@ pub static ATTRIBUTE_SUBGROUPS_COMPUTE: Module = Module {
     name: "attribute_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("attribute_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 14, 15, 16, 17, 19, 23, 24, 44, 45, 46, 47, 67, 70, 79, 82],
+    constants: &[0, 3, 4, 14, 15, 16, 17, 19, 23, 24, 44, 45, 46, 47, 67, 70, 79, 82, 83],
     resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, false), (&resource::SUMS0, true), (&resource::SUMS1, true), (&resource::INCOMPLETE_FRAME, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::CLIP_TEXELS, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -95,7 +95,7 @@ pub static ATTRIBUTE_BEHIND_FRAGMENT: Module = Module {
     name: "attribute_behind_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("attribute_behind_fragment.spv"),
-    constants: &[0, 4, 15, 16, 19, 27, 70, 79],
+    constants: &[0, 4, 15, 16, 19, 27, 70, 79, 83],
     resources: &[(&resource::FRAME, false), (&resource::VISIBILITY_IMAGE, false)],
     push: 0,
 };
@@ -105,7 +105,7 @@ pub static ATTRIBUTE_BEHIND_CLIP_LINES_FRAGMENT: Module = Module {
     name: "attribute_behind_clip_lines_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("attribute_behind_clip_lines_fragment.spv"),
-    constants: &[0, 4, 15, 16, 19, 23, 24, 27, 70, 79],
+    constants: &[0, 4, 15, 16, 19, 23, 24, 27, 70, 79, 83],
     resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false), (&resource::VISIBILITY_IMAGE, false)],
     push: 0,
 };
@@ -135,7 +135,7 @@ pub static BEHIND_COMPUTE: Module = Module {
     name: "behind_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("behind_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 67, 70, 72, 76, 79, 81, 82],
+    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 67, 70, 72, 76, 79, 81, 82, 83],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, false), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::EDGE_TILES, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -145,7 +145,7 @@ pub static BEHIND_SUBGROUPS_COMPUTE: Module = Module {
     name: "behind_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("behind_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 67, 70, 72, 76, 79, 81, 82],
+    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 67, 70, 72, 76, 79, 81, 82, 83],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, false), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::CLIP_TEXELS, false), (&resource::EDGE_TILES, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -155,7 +155,7 @@ pub static BEHIND_SLICES_COMPUTE: Module = Module {
     name: "behind_slices_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("behind_slices_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 67, 70, 72, 74, 76, 79, 82],
+    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 67, 70, 72, 74, 76, 79, 82, 83],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, true), (&resource::SUMS1, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::BEHIND_DEPTHS, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -165,7 +165,7 @@ pub static BEHIND_SUBGROUPS_SLICES_COMPUTE: Module = Module {
     name: "behind_subgroups_slices_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("behind_subgroups_slices_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 67, 70, 72, 74, 76, 79, 82],
+    constants: &[0, 3, 4, 6, 7, 14, 15, 16, 17, 18, 19, 20, 23, 24, 44, 45, 46, 47, 67, 70, 72, 74, 76, 79, 82, 83],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, true), (&resource::SUMS1, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::CLIP_TEXELS, false), (&resource::BEHIND_DEPTHS, true)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -485,7 +485,7 @@ pub static FOOTPRINT_TILES_COMPUTE: Module = Module {
     name: "footprint_tiles_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("footprint_tiles_compute.spv"),
-    constants: &[0, 1, 2, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 21, 22, 23, 26, 27, 37, 45, 46, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 67, 68, 70, 73, 78, 79],
+    constants: &[0, 1, 2, 3, 5, 7, 12, 13, 14, 15, 16, 17, 19, 20, 21, 22, 23, 26, 27, 37, 45, 46, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 67, 68, 70, 73, 78, 79, 83, 84],
     resources: &[(&resource::FRAME, false), (&resource::SPLAT_LAYOUT, true), (&resource::SPLATS, true), (&resource::LATTICE_POSITIONS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::LATTICES, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::SPLAT_ATTRIBUTES, true), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::WEIGHTS, false), (&resource::SPLAT_BOXES, true), (&resource::ORDER, false), (&resource::VISIBLE_CLUSTERS, false), (&resource::COUNTS, true)],
     push: size_of::<layout::Chunk>() as u32,
 };
@@ -975,7 +975,7 @@ pub static SURFACE_COMPUTE: Module = Module {
     name: "surface_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 67, 68, 70, 72, 76, 79, 80, 82],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 67, 68, 70, 72, 76, 79, 80, 82, 83],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOXES, false), (&resource::FRAME_SPLATS, false), (&resource::FRAME_ATTRIBUTES, false), (&resource::FRAME_CLIPS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::OPEN_TILES, true), (&resource::EDGE_TILES, true), (&resource::REVEALED_TILES, true), (&resource::COVERED_TILES, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -985,7 +985,7 @@ pub static SURFACE_SUBGROUPS_COMPUTE: Module = Module {
     name: "surface_subgroups_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("surface_subgroups_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 67, 68, 70, 72, 76, 79, 80, 82],
+    constants: &[0, 3, 4, 6, 7, 9, 10, 14, 15, 16, 17, 18, 19, 20, 23, 24, 31, 44, 45, 46, 47, 67, 68, 70, 72, 76, 79, 80, 82, 83],
     resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, true), (&resource::IMAGE_OUTPUT, true), (&resource::INCOMPLETE_FRAME, true), (&resource::COVERAGE, true), (&resource::BOX_TEXELS, false), (&resource::SPLAT_TEXELS, false), (&resource::ATTRIBUTE_TEXELS, false), (&resource::NORMAL_OUTPUT, true), (&resource::DEPTH_OUTPUT, true), (&resource::CLIP_TEXELS, false), (&resource::OPEN_TILES, true), (&resource::EDGE_TILES, true), (&resource::REVEALED_TILES, true), (&resource::COVERED_TILES, false)],
     push: size_of::<layout::Hierarchy>() as u32,
 };
@@ -1128,6 +1128,8 @@ pub mod constant {
     pub const FOOTPRINT: u32 = 15;
     /// `FRAME_CORNERS`, first in `shaders-glsl/attribute.glsl`.
     pub const FRAME_CORNERS: u32 = 46;
+    /// `FRAME_NORMAL_FIELDS`, first in `shaders-glsl/attribute.glsl`.
+    pub const FRAME_NORMAL_FIELDS: u32 = 83;
     /// `FRAME_WEIGHTS`, first in `shaders-glsl/attribute.glsl`.
     pub const FRAME_WEIGHTS: u32 = 45;
     /// `FRONTS`, first in `shaders-glsl/visibility.glsl`.
@@ -1162,6 +1164,8 @@ pub mod constant {
     pub const NORMALIZATION: u32 = 18;
     /// `NORMALS`, first in `shaders-glsl/attribute.glsl`.
     pub const NORMALS: u32 = 54;
+    /// `NORMAL_FIELDS`, first in `shaders-glsl/attribute.glsl`.
+    pub const NORMAL_FIELDS: u32 = 84;
     /// `NORMAL_OFFSET`, first in `shaders-glsl/attribute.glsl`.
     pub const NORMAL_OFFSET: u32 = 52;
     /// `NORMAL_STRIDE`, first in `shaders-glsl/attribute.glsl`.
@@ -1328,7 +1332,7 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
     };
 
-    /// `EllipseWords`, first in `shaders-glsl/fetch.glsl`.
+    /// `EllipseWords`, first in `shaders-glsl/attribute.glsl`.
     pub static ELLIPSE_WORDS: Resource = Resource {
         name: "EllipseWords",
         set: 0,
@@ -1337,7 +1341,7 @@ pub mod resource {
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
     };
 
-    /// `Ellipses`, first in `shaders-glsl/fetch.glsl`.
+    /// `Ellipses`, first in `shaders-glsl/attribute.glsl`.
     pub static ELLIPSES: Resource = Resource {
         name: "Ellipses",
         set: 0,

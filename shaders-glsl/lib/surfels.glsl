@@ -40,8 +40,8 @@ const uint NORMALS_WITH_CURVATURES = 5; // octahedral codes of 23 bits above the
 const uint NO_NORMAL = 0x80008000u, NO_COARSE_NORMAL = 0xffffffffu;
 const int COARSE_NORMAL = 1447, COARSE_VALUES = 2 * COARSE_NORMAL + 1; // largest coordinate of a code of 23 bits, and their number
 const uint CURVATURE_BITS = 9; // of curvatures beside normals; three more are those above the coordinates
-const int LEAST_CURVATURE = -9, CURVATURE_LINES = 12, CURVATURE_SHAPES = 1 + 8 * CURVATURE_LINES;
-const uint CURVATURE_ROOTS = 0x57351800u; // bytes: mantissas of the powers of 2¼
+const int LEAST_CURVATURE = -9, CURVATURE_SIZES = 21, CURVATURE_LINES = 12, CURVATURE_SHAPES = 1 + 8 * CURVATURE_LINES;
+const int MANTISSA_OF_ROOT = 0x35; // of √2
 
 DEFINE_COLOURS(stored_colour, STORED_COLOURS, colours, COLOUR_OFFSET, COLOUR_STRIDE)
 
@@ -86,12 +86,29 @@ vec3 stored_normal(uint i) {
     return uintBitsToFloat(uvec3(normals[k], normals[k + 1], normals[k + 2]));
 }
 
+// Principal curvature of the larger magnitude, 1 / unit.
+float largest_curvature(uint curvature) {
+    return uintBitsToFloat(curvature & 0xffff0000u);
+}
+
+// Its direction, and the other principal curvature divided by it.
+vec3 curvature_shape(uint curvature) {
+    vec2 shape = unpackSnorm4x8(curvature).xy;
+    float angle = 1.5707963 * shape.y;
+    return vec3(cos(angle), sin(angle), shape.x);
+}
+
 // Normal curvature, 1 / unit, in the direction of a tangent: above 0 where the surface bends away from the normal (Euler's formula).
 float curvature_along(uint curvature, vec2 tangent) {
-    float largest = uintBitsToFloat(curvature & 0xffff0000u);
-    vec2 shape = unpackSnorm4x8(curvature).xy;
-    float angle = 1.5707963 * shape.y, along = dot(tangent, vec2(cos(angle), sin(angle)));
-    return largest * mix(shape.x, 1.0, along * along / max(dot(tangent, tangent), 1e-30));
+    vec3 shape = curvature_shape(curvature);
+    float along = dot(tangent, shape.xy);
+    return largest_curvature(curvature) * mix(shape.z, 1.0, along * along / max(dot(tangent, tangent), 1e-30));
+}
+
+// Change of the normal along a tangent of this length: the shape operator applied to the tangent.
+vec2 turn_along(uint curvature, vec2 tangent) {
+    vec3 shape = curvature_shape(curvature);
+    return largest_curvature(curvature) * (shape.z * tangent + (1.0 - shape.z) * dot(shape.xy, tangent) * shape.xy);
 }
 
 bool is_billboard(uint i) {
@@ -111,15 +128,17 @@ bool is_two_sided(uint i) {
     return TWO_SIDED && stored_radius(i) < 0.0;
 }
 
-// Curvature of a disc with this radius, of a code that is not 0: one of 42 sizes, quarter powers of two from 2^LEAST_CURVATURE on relative to
-// the radius, by one of the shapes (src/geometry/quantized/curvatures.rs).
+// Curvature of a disc with this radius, of a code that is not 0: a sign, one of 21 sizes, powers of √2 from 2^LEAST_CURVATURE on relative to the
+// radius, and one of the shapes (src/geometry/quantized/curvatures.rs).
 uint decoded_curvature(int code, float radius) {
     int size = (code - 1) / CURVATURE_SHAPES, shape = (code - 1) % CURVATURE_SHAPES;
-    int exponent = clamp(127 + LEAST_CURVATURE + size / 4 - (int(floatBitsToUint(radius) >> 23) - 127), 1, 254);
-    int root = int(CURVATURE_ROOTS >> 8 * (size % 4)) & 0xff;
+    bool negative = size >= CURVATURE_SIZES;
+    size -= negative ? CURVATURE_SIZES : 0;
+    int exponent = clamp(127 + LEAST_CURVATURE + size / 2 - (int(floatBitsToUint(radius) >> 23) - 127), 1, 254);
+    int root = size % 2 != 0 ? MANTISSA_OF_ROOT : 0;
     int steps = (shape - 1) / CURVATURE_LINES, line = (shape - 1) % CURVATURE_LINES;
     int ratio = shape == 0 ? 127 : max(95 - 32 * steps, -127), angle = shape == 0 ? 0 : 127 * line / 6 - 127;
-    return uint(exponent << 23 | root << 16 | (angle & 0xff) << 8 | ratio & 0xff);
+    return (negative ? 0x80000000u : 0) | uint(exponent << 23 | root << 16 | (angle & 0xff) << 8 | ratio & 0xff);
 }
 
 // Curvature of surfel i's surface in the format of src/geometry/curvature.rs; 0 if it is unknown.

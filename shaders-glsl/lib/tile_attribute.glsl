@@ -11,7 +11,7 @@ float attribute_cull_key;
 
 // Adds a splat to the sums, if `is_splat`; `attribute0` is (normal or colour, weight).
 void add_attributes(
-    TileSplat splat, vec4 attribute0, vec3 attribute1, vec4 corners, vec3 square, bool is_splat) {
+    TileSplat splat, vec4 attribute0, vec3 attribute1, mat2x3 field, vec4 corners, vec3 square, bool is_splat) {
     mat2 axes = mat2(square.xy, square.z * vec2(-square.y, square.x));
     for (uint r = 0; r < ROWS; r++) {
         vec2 m;
@@ -26,7 +26,10 @@ void add_attributes(
         if (!OVERLAP) weight *= kernel(dot(m, m));
         if (FRAME_CORNERS && !OVERLAP) weight *= bilinear_weight(corners, axes, m);
         weight = has_fragment ? weight : 0.0;
-        tile_sums0[r] += vec4(weight, weight * attribute0.xyz);
+        vec3 value = attribute0.xyz;
+        // Far outside a thin splat m is so large that the normal would be NaN.
+        if (FRAME_NORMAL_FIELDS) value = normal_at(value, field, has_fragment ? m : vec2(0.0));
+        tile_sums0[r] += vec4(weight, weight * value);
         tile_sums1[r] += vec4(has_fragment ? weight * frame.key_gain * key : 0.0, weight * attribute1);
     }
 }
@@ -40,13 +43,16 @@ void add_attribute_batch(uint count, uint id, uvec2 origin) {
     // Lanes beyond the batch may hold NaN, which a weight of 0 would not cancel.
     attribute0 = lane < count ? attribute0 : vec4(0.0);
     attributes.attribute1 = lane < count ? attributes.attribute1 : vec3(0.0);
+    attributes.field = lane < count ? attributes.field : mat2x3(0.0);
     uint s = 0;
     do {
         for (uint k = 0; k < UNROLLED; k++) {
             vec3 attribute1 = WIDE_SUMS1 ? shuffle(attributes.attribute1, s + k) : vec3(0.0);
+            mat2x3 field = mat2x3(0.0);
+            if (FRAME_NORMAL_FIELDS) field = mat2x3(shuffle(attributes.field[0], s + k), shuffle(attributes.field[1], s + k));
             vec4 corners = FRAME_CORNERS ? shuffle(attributes.corners, s + k) : vec4(1.0);
             vec3 square = FRAME_CORNERS ? shuffle(attributes.square, s + k) : vec3(1.0);
-            add_attributes(shuffle(lane_splat, s + k), shuffle(attribute0, s + k), attribute1, corners, square,
+            add_attributes(shuffle(lane_splat, s + k), shuffle(attribute0, s + k), attribute1, field, corners, square,
                 s + k < count);
         }
         s += UNROLLED;

@@ -159,7 +159,7 @@ fn of_streams(pass: &Pass, variant: &Variant, scene: &Streams) -> u64 {
     let makes_splats = pass.writes.contains(&Resource::Splats);
     let is_read = |name: &str| match name {
         "positions" | "normals" => true,
-        "curvatures" => makes_splats && variant.curvatures,
+        "curvatures" => makes_splats && (variant.curvatures || variant.normal_fields),
         "colours" => makes_splats && variant.is_tiled() && variant.colours,
         "weights" => makes_splats && variant.weights,
         _ => makes_splats,

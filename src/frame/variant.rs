@@ -34,8 +34,10 @@ pub struct Variant {
     pub normalization: Normalization,
     /// Kernels are multiplied by normalization weights.
     pub weights: bool,
-    /// Stage of lighting; [`Shade::Pixel`] unless lit.
+    /// Stage of lighting; [`Shade::Pixel`] unless lit, [`Shade::MeanNormal`] of normal fields.
     pub shade: Shade,
+    /// Normals vary over discs: some scene has curvatures, and the frame sums normals of fields.
+    pub normal_fields: bool,
     /// The low-pass filter widens only axes shorter than itself.
     pub widen_small: bool,
     /// Splats are counted by cull reason.
@@ -101,8 +103,10 @@ pub struct SceneVariant {
     pub frame: Variant,
     /// Surfels are ellipses.
     pub ellipses: bool,
-    /// Curvatures are stored with the normals, and the frame uses them.
+    /// Curvatures are stored with the normals, and discs of the frame end where convex surfaces turn away.
     pub curvatures: bool,
+    /// Curvatures are stored with the normals, and the frame sums normals of fields.
+    pub normal_fields: bool,
     /// Some discs have clip lines.
     pub clips: bool,
     /// Some surfels are two-sided, so never culled as back faces.
@@ -158,7 +162,11 @@ impl Variant {
         // Splatting axes have no effect on pull–push.
         let splatting = if settings.pull_push.is_some() { Splatting::default() } else { settings.splatting };
         let needs_colour = shading.is_coloured();
-        let shade = if shading == Shading::Lit { splatting.shade } else { Shade::Pixel };
+        let shade = match splatting.shade {
+            _ if shading != Shading::Lit => Shade::Pixel,
+            Shade::NormalField => Shade::MeanNormal,
+            shade => shade,
+        };
         let shade_splats = shade == Shade::Splat;
         let robust = settings.pull_push.is_some_and(|pull_push| pull_push.rules == Rules::Robust);
         let texture = streams.iter().find_map(|streams| streams.texture).filter(|_| robust && needs_colour);
@@ -178,6 +186,11 @@ impl Variant {
         let tiled = settings.pull_push.is_none() && rasterizer == Rasterizer::Compute;
         let weights = splatting.normalization == Normalization::Surfel && shading != Shading::Overlap;
         let lit_pixels = shading == Shading::Lit && !shade_splats;
+        let normals = lit_pixels || shading == Shading::Normal || options.outputs.normal;
+        // Discs whose plane and kernel are the surface's.
+        let on_surface = settings.pull_push.is_none()
+            && splatting.has_gaussian_discs()
+            && streams.iter().any(|streams| streams.curvatures);
         Self {
             perspective,
             distant: false,
@@ -190,9 +203,10 @@ impl Variant {
             normalization,
             weights,
             shade,
+            normal_fields: on_surface && normals && settings.has_normal_fields(),
             widen_small: settings.widen == Widen::Small && splatting.filter != Filter::None,
             count: options.count,
-            normals: lit_pixels || shading == Shading::Normal || options.outputs.normal,
+            normals,
             depth: shading == Shading::Depth || edl || settings.occludes() || options.outputs.depth,
             colours: needs_colour && (undivided || shade_splats || coloured),
             unbounded_colours: colours.iter().any(|colours| floats.contains(colours)),
@@ -217,11 +231,7 @@ impl Variant {
             clips: tiled
                 && splatting.footprint != Footprint::Point
                 && streams.iter().any(|streams| streams.clips),
-            curvatures: settings.pull_push.is_none()
-                && settings.drawn_alpha() == Alpha::Coverage
-                && splatting.footprint.is_in_tangent_plane()
-                && splatting.kernel == Kernel::Gaussian
-                && streams.iter().any(|streams| streams.curvatures),
+            curvatures: on_surface && settings.drawn_alpha() == Alpha::Coverage,
             unordered: tiled && streams.iter().any(|streams| streams.unordered),
             clusters: rasterizer == Rasterizer::Compute && streams.iter().any(|streams| streams.clusters),
             occlusion_culling: false,
@@ -280,6 +290,7 @@ impl Variant {
     pub fn attribute_rows(&self) -> u64 {
         u64::from(self.wide_sums0() || self.weights)
             + u64::from(self.wide_sums1())
+            + u64::from(self.normal_fields)
             + 2 * u64::from(self.corners)
     }
 
@@ -378,6 +389,7 @@ impl Variant {
             .with(constant::CLIPS, self.clips)
             .with(constant::BEYOND_CLIPS, self.coverage && self.clips)
             .with(constant::CURVATURES, self.curvatures)
+            .with(constant::FRAME_NORMAL_FIELDS, self.normal_fields)
             .with(constant::SLICED, self.sliced)
             .with(constant::CLUSTERS, self.clusters)
             .with(constant::OCCLUSION_CULLING, self.occlusion_culling)
@@ -402,6 +414,7 @@ impl SceneVariant {
             frame,
             ellipses: streams.ellipses,
             curvatures: streams.curvatures && frame.curvatures,
+            normal_fields: streams.curvatures && frame.normal_fields,
             clips: streams.clips && frame.footprint != Footprint::Point,
             two_sided: streams.two_sided,
             billboards: streams.billboards,
@@ -478,6 +491,7 @@ impl SceneVariant {
             .with(constant::BILLBOARDS, self.billboards)
             .with(constant::HAS_LEVELS, self.levels)
             .with(constant::CURVATURES, self.curvatures)
+            .with(constant::NORMAL_FIELDS, self.normal_fields)
             .with(constant::CLIPS, self.clips)
             .with(constant::BEYOND_CLIPS, self.frame.coverage && self.clips)
             .with(constant::WEIGHTS, self.weights)

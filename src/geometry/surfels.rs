@@ -22,7 +22,7 @@ pub struct Surfels {
     /// Shapes of the discs; `None` if all are circles.
     pub ellipses: Option<Vec<Ellipse>>,
     /// Normal curvatures of the surface at the centres; `None` if all are unknown. With coverage, discs end where a convex surface turns away
-    /// from the eye.
+    /// from the eye; with [`Shade::NormalField`](crate::settings::splatting::Shade::NormalField), normals vary over discs.
     pub curvatures: Option<Vec<Curvature>>,
     /// Surfels that are two-sided, so that neither side is the back; `None` if there are none.
     pub two_sided: Option<Vec<bool>>,

@@ -10,7 +10,7 @@ pub mod pull_push;
 pub mod splatting;
 
 use crate::settings::pull_push::{PullPush, Rules};
-use crate::settings::splatting::{Filter, Footprint, Normalization, Splatting, Visibility};
+use crate::settings::splatting::{Filter, Footprint, Normalization, Shade, Splatting, Visibility};
 pub use choice::Choice;
 pub use hierarchy::Hierarchy;
 pub use lighting::{DirectionalLight, Lighting};
@@ -195,6 +195,14 @@ impl Settings {
             && self.splatting.visibility == Visibility::Ray
             && self.drawn_alpha() == Alpha::Coverage
             && self.shading.is_coloured()
+    }
+
+    /// Whether normals vary over discs, of a scene with curvatures: [`Shade::NormalField`].
+    pub fn has_normal_fields(&self) -> bool {
+        self.splatting.shade == Shade::NormalField
+            && self.pull_push.is_none()
+            && self.splatting.visibility != Visibility::Nearest
+            && self.splatting.has_gaussian_discs()
     }
 
     /// The settings by which subpasses of a host draw: over the host's picture, without the filter of pixels, eye-dome lighting and ambient

@@ -173,6 +173,11 @@ pub enum Shade {
     /// The mean of the diffuse light of several normals is that of their mean, as long as all of them face the light: a pixel with a crease is
     /// as bright as its parts are on average. Highlights are those of the normalized normal.
     MeanNormal = 2,
+    /// As mean-normal, of normals that vary over a disc by the curvature of its surface.
+    ///
+    /// A splat has a linear field of normals, not one normal, so that large discs show no facets (Botsch, Spernat and Kobbelt 2004, *Phong
+    /// Splatting*). Where curvatures are unknown, and for sprites, Confetti's kernel and the nearest splat alone, it is mean-normal.
+    NormalField = 3,
 }
 
 impl Default for Splatting {
@@ -186,6 +191,13 @@ impl Default for Splatting {
             normalization: Normalization::Pixel,
             shade: Shade::MeanNormal,
         }
+    }
+}
+
+impl Splatting {
+    /// Whether kernels are Gaussians on discs in the tangent plane, which the curvature of a surface tells where they leave it.
+    pub fn has_gaussian_discs(&self) -> bool {
+        self.footprint.is_in_tangent_plane() && self.kernel == Kernel::Gaussian
     }
 }
 

@@ -209,7 +209,10 @@ fn every_case_by_other_axes() {
         Splatting { normalization: Normalization::Surfel, footprint: Footprint::Disc, ..object },
         Splatting { normalization: Normalization::Surfel, ..sprites },
         Splatting { filter: Filter::Screen, shade: Shade::Pixel, ..sprites },
-        Splatting { shade: Shade::MeanNormal, ..conic },
+        Splatting { shade: Shade::NormalField, ..conic },
+        Splatting { shade: Shade::NormalField, footprint: Footprint::Affine, ..conic },
+        Splatting { shade: Shade::NormalField, footprint: Footprint::Parallelogram, ..object },
+        Splatting { shade: Shade::NormalField, visibility: Visibility::Axis, ..conic },
         nearest,
         Splatting { footprint: Footprint::Square, filter: Filter::None, ..nearest },
         Splatting { footprint: Footprint::Point, filter: Filter::None, ..nearest },
@@ -229,8 +232,8 @@ fn with_axes(settings: impl Fn(&Case) -> Settings) -> Vec<Case> {
     let mut cases = cases();
     for case in &mut cases {
         case.settings = settings(case);
-        let covers = case.settings.alpha == Alpha::Coverage;
-        case.surfels.curvatures = covers.then(|| curvatures(&case.surfels.radii));
+        let reads = case.settings.alpha == Alpha::Coverage || case.settings.has_normal_fields();
+        case.surfels.curvatures = reads.then(|| curvatures(&case.surfels.radii));
         let by_surfel = case.settings.splatting.normalization == Normalization::Surfel;
         case.surfels.weights = by_surfel.then(|| weights(case.surfels.len()));
     }

@@ -36,6 +36,7 @@ mod levels_in_motion;
 mod lines;
 mod materials;
 mod mesh_outlines;
+mod normal_fields;
 mod papers;
 mod parallel;
 mod pipelines;

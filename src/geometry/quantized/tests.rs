@@ -72,13 +72,13 @@ fn difference([a, b]: [Curvature; 2], [from, to]: [Vec3; 2]) -> f64 {
     };
     let at = |i: i32| tangent(tangents(to.as_dvec3()), i);
     let differences = (0..63).map(|i| (along(a, from, at(i)) - along(b, to, at(i))).abs());
-    differences.fold(0.0, f64::max) / b.largest()
+    differences.fold(0.0, f64::max) / b.largest().abs()
 }
 
 #[test]
 fn normals_with_curvatures_are_coarser() {
     let mut exact = sphere(20_000, Vec3::ZERO);
-    for (scale, ratio) in [(0.01, 1.0), (0.1, 0.7), (0.7, 0.3), (1.3, 0.0), (0.3, -0.4), (0.05, -1.0)] {
+    for (scale, ratio) in [(0.01, 1.0), (0.1, 0.7), (-0.7, 0.3), (1.3, 0.0), (0.3, -0.4), (-0.05, -1.0)] {
         let each = |radius: &f32, i: u32| {
             let largest = scale / f64::from(*radius);
             curvature(largest, ratio * largest, f64::from(i))
@@ -99,7 +99,7 @@ fn normals_with_curvatures_are_coarser() {
             "{scale} {ratio}"
         );
         println!("ratio {ratio}: curvatures change by {most} at most");
-        assert!(most < 0.3, "{ratio}: {most}");
+        assert!(most < 0.35, "{ratio}: {most}");
     }
 }
 
@@ -111,7 +111,7 @@ fn codes_of_curvatures_at_any_scale() {
             let found = curvatures::curvature(curvatures::code(exact, radius), radius);
             let ratio = found.largest() / exact.largest();
             assert!(
-                (0.91..1.1).contains(&ratio) || exact == Curvature::default(),
+                (0.84..1.19).contains(&ratio) || exact == Curvature::default(),
                 "{radius} {size}: {ratio}"
             );
         }

@@ -22,12 +22,13 @@ pub(super) struct Sums {
 }
 
 impl Sums {
-    /// Contribution of `splat` with weight `weight` at distance `depth`. With [`Shading::Overlap`] every weight is 1.
-    pub fn of(projector: &Projector, splat: &Splat, weight: f64, depth: f64) -> Self {
+    /// Contribution of `splat` with its normal at the pixel, with weight `weight` at distance `depth`. With [`Shading::Overlap`] every weight
+    /// is 1.
+    pub fn of(projector: &Projector, splat: &Splat, normal: DVec3, weight: f64, depth: f64) -> Self {
         let weight = if projector.settings.shading == Shading::Overlap { 1.0 } else { weight };
         Self {
             weight,
-            normal: weight * splat.normal,
+            normal: weight * normal,
             colour: weight * splat.colour,
             depth: if projector.depth.perspective { weight / depth } else { weight * depth },
         }
@@ -56,7 +57,8 @@ pub(super) fn pass(
         band.inside(&ellipse, |hit| {
             let Some(depth) = projector.depth_of(splat, hit.at) else { return };
             if counts(hit.index, hit.rank(depth)) {
-                sums[hit.index] += Sums::of(projector, splat, ellipse.weight(hit.in_kernel), depth);
+                let (normal, weight) = (ellipse.normal(hit.in_kernel), ellipse.weight(hit.in_kernel));
+                sums[hit.index] += Sums::of(projector, splat, normal, weight, depth);
             }
         });
     }

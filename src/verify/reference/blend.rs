@@ -50,7 +50,7 @@ pub(super) struct Contribution {
 impl Fragment {
     pub fn of(model: &ErrorModel, c: &Candidate) -> Self {
         let weight = model.weight(c);
-        let sums = Sums::of(model.projector, c.splat, weight.value, c.depth);
+        let sums = Sums::of(model.projector, c.splat, c.normal(), weight.value, c.depth);
         Self {
             rank: c.rank(c.depth),
             tolerance: c.depth_tolerance(),

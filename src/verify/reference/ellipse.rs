@@ -55,6 +55,11 @@ pub(super) struct Ellipse {
     /// kernel's.
     pub corners: [f64; 4],
     pub square_to_kernel: DMat2,
+    /// Unit normal at the centre, and its change: see [`Splat::bend`].
+    pub normal: DVec3,
+    pub bend: [DVec3; 2],
+    /// 1-σ lengths of the unfiltered kernel divided by those of the kernel.
+    pub unfiltered: DVec2,
     /// See [`Projector::clip_reach`].
     pub clip_reach: f64,
     /// See [`Splat::turn`].
@@ -121,6 +126,9 @@ impl Ellipse {
             clip: splat.clip,
             corners: splat.weights,
             square_to_kernel: square_to_kernel(splat, axis),
+            normal: splat.normal,
+            bend: splat.bend,
+            unfiltered: DVec2::new((major / variance.x).sqrt(), (minor / variance.y).sqrt()),
             clip_reach: projector.clip_reach(),
             turn: splat.turn,
         }
@@ -211,6 +219,13 @@ impl Ellipse {
     /// Weight at the position `m` in the kernel, σ: kernel times amplitude times normalization weight.
     pub fn weight(&self, m: DVec2) -> f64 {
         self.amplitude * (-self.exponent(m.length())).exp() * self.normalization(m)
+    }
+
+    /// Unit normal at the position `m` in the kernel, σ. The low-pass filter H widens the kernel, not the disc: the points of the disc that it sums
+    /// in a pixel are, in the mean, at V (V + H)⁻¹ times the pixel's offset from the centre.
+    pub fn normal(&self, m: DVec2) -> DVec3 {
+        let on_disc = self.square_to_kernel.transpose() * (self.unfiltered * m);
+        (self.normal + on_disc.x * self.bend[0] + on_disc.y * self.bend[1]).normalize()
     }
 
     /// Normalization weight at the position `m` in the kernel, σ: bilinear in its square (ren2002 section 7.2).
@@ -428,6 +443,9 @@ mod tests {
             clip: None,
             corners: [1.0; 4],
             square_to_kernel: DMat2::IDENTITY,
+            normal: DVec3::Z,
+            bend: [DVec3::ZERO; 2],
+            unfiltered: DVec2::ONE,
             clip_reach: 0.0,
             turn: None,
         }

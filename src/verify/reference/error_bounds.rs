@@ -187,7 +187,7 @@ fn nearest_of_band(
     model.scan(band, &splats, Ellipse::visibility, |c| {
         if c.rank(ranked(c.splat, c.depth)).farther(-c.depth_tolerance()) <= farthest[c.pixel] {
             let weight = Weight { value: 1.0, ..model.weight(&c) };
-            let sums = Sums::of(model.projector, c.splat, weight.value, c.depth);
+            let sums = Sums::of(model.projector, c.splat, c.normal(), weight.value, c.depth);
             let rounding_sums = RoundingSums::of(model, &c, &weight);
             contributions[c.pixel].push(Contribution { sums, rounding_sums });
         }

@@ -43,6 +43,11 @@ impl Candidate<'_> {
         Rank { clipped: self.clipped, depth }
     }
 
+    /// Unit normal of the splat at the pixel.
+    pub fn normal(&self) -> DVec3 {
+        self.ellipse.normal(self.in_kernel)
+    }
+
     /// Error bound of the depth in a comparison.
     pub fn depth_tolerance(&self) -> f64 {
         self.depth_error.max(DEPTH_TOLERANCE * self.resolved)

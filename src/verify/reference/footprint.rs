@@ -7,7 +7,7 @@ use super::image::Disc;
 use super::shading::{Shine, linear, lit};
 use crate::error::Result;
 use crate::geometry::{Camera, Clip, ClipLine, Colours, Curvature, Surfels, square_axis, tangents};
-use crate::settings::splatting::{Kernel, Normalization, Shade};
+use crate::settings::splatting::{Normalization, Shade};
 use crate::settings::{Alpha, Cull, Settings, Shading};
 use glam::{DMat2, DMat3, DVec2, DVec3};
 
@@ -90,6 +90,8 @@ pub struct Splat {
     pub shift: f64,
     /// World-space unit normal, turned to the eye.
     pub normal: DVec3,
+    /// Change of the normal per σ of the disc along the axes of its square, orthogonal to it; 0 without a normal field.
+    pub bend: [DVec3; 2],
     /// Linear RGB; the lighting's albedo where the scene has no colours.
     pub colour: DVec3,
     /// 1 / cosine of the angle between the normal and the ray through the centre: the factor by which rounding errors
@@ -165,6 +167,9 @@ const LARGEST_VARIANCE: f64 = 1e30;
 /// angles the tangent plane of a sphere leaves its outline at twice that depth.
 const TURN_DEPTH: f64 = 0.25;
 
+/// Largest turn of the normal at the rim of a disc, as a tangent: curvatures of noisy points may be anything.
+const MOST_TURN: f64 = 1.0;
+
 /// Cull reason of a surfel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Culled {
@@ -231,6 +236,7 @@ impl Projector {
             nearest: image.nearest,
             shift: self.shift(surfel.radius, distance),
             normal: towards,
+            bend: self.bend(surfel, facing),
             colour: self.splat_colour(shown, towards, centre),
             secant,
             aspect: if is_point { 1.0 } else { surfel.aspect },
@@ -268,12 +274,29 @@ impl Projector {
         Surfel { normal, major, aspect: 1.0, curvature: Curvature::default(), ..*surfel }
     }
 
+    /// See [`Splat::bend`]: the shape operator applied to the square's axes (Botsch, Spernat and Kobbelt 2004, *Phong Splatting*, section 3).
+    fn bend(&self, surfel: &Surfel, facing: f64) -> [DVec3; 2] {
+        if !self.settings.has_normal_fields() {
+            return [DVec3::ZERO; 2];
+        }
+        let curvature = surfel.curvature;
+        let at_rim = curvature.largest().abs() * surfel.radius;
+        let sigma = surfel.radius / self.cutoff() * (MOST_TURN / at_rim).min(1.0);
+        let basis = tangents(surfel.normal);
+        let minor = surfel.aspect * surfel.normal.cross(surfel.major);
+        [surfel.major, minor].map(|axis| {
+            let along = basis.map(|tangent| sigma * tangent.dot(axis));
+            let turn = curvature.turn_along(along.into());
+            let turned = turn.x * basis[0] + turn.y * basis[1];
+            if facing > 0.0 { -turned } else { turned }
+        })
+    }
+
     /// Line on the screen beyond which the surface has turned away from the eye: where the tangent plane of a front-facing
     /// surfel is [`TURN_DEPTH`] below the centre. `centre` is in eye space, `plane` as in [`Splat`].
     fn turn_line(&self, surfel: &Surfel, centre: DVec3, plane: DVec3) -> Option<TurnLine> {
-        let splatting = &self.settings.splatting;
-        let shapes = splatting.footprint.is_in_tangent_plane() && splatting.kernel == Kernel::Gaussian;
-        if self.settings.drawn_alpha() != Alpha::Coverage || !shapes {
+        let has_discs = self.settings.splatting.has_gaussian_discs();
+        if self.settings.drawn_alpha() != Alpha::Coverage || !has_discs {
             return None;
         }
         let perspective = self.depth.perspective;
@@ -297,7 +320,7 @@ impl Projector {
         let slope = DVec2::new(above.y, above.z).length();
         // Of the curvature: of its direction, and of its terms.
         let swing = 2.0 * (1.0 - surfel.curvature.ratio()) / sine;
-        let error = ROUNDING * surfel.curvature.largest() * (4.0 + swing);
+        let error = ROUNDING * surfel.curvature.largest().abs() * (4.0 + swing);
         // Of the depth below the centre: below / (1 ± error) differs by less than twice that.
         let below_error = 2.0 * below * error / (curvature + error);
         let depth = if perspective { 1.0 / distance } else { distance };

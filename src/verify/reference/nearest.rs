@@ -16,7 +16,7 @@ pub(super) fn pass(projector: &Projector, scene: &ProjectedScene, band: &Band) -
             let Some(depth) = projector.depth_of(splat, hit.at) else { return };
             let rank = hit.rank(ranked(splat, depth));
             if rank < nearest[hit.index].0 {
-                nearest[hit.index] = (rank, Some(Sums::of(projector, splat, 1.0, depth)));
+                nearest[hit.index] = (rank, Some(Sums::of(projector, splat, splat.normal, 1.0, depth)));
             }
         });
     }

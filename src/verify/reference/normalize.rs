@@ -71,7 +71,7 @@ pub(super) fn resolve(projector: &Projector, at: DVec2, sums: Option<&Sums>, alp
         Shading::Lit => {
             let (lighting, shine) = (&settings.lighting, Shine::of_frame(&settings.lighting));
             match settings.splatting.shade {
-                Shade::MeanNormal => {
+                Shade::MeanNormal | Shade::NormalField => {
                     lit_by_mean(lighting, shine, colour, normal, sums.normal / sums.weight, viewer)
                 }
                 Shade::Splat | Shade::Pixel => lit(lighting, shine, colour, normal, viewer),

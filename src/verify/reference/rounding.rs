@@ -57,7 +57,7 @@ impl RoundingSums {
             if model.projector.depth.perspective { weight.value / depth } else { weight.value };
         Self {
             weight: weight.value,
-            normal: weight.value * c.splat.normal,
+            normal: weight.value * c.normal(),
             weight_error: weight.value * weight.error,
             half_ulps: weight.value * weight.half_ulps,
             depth_weight,

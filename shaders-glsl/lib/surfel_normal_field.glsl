@@ -1,0 +1,36 @@
+// Linear normal fields of surfels: see lib/normal_field.glsl.
+
+#include "lib/normal_field.glsl"
+#include "lib/surfel_normal.glsl"
+#include "lib/square.glsl"
+
+layout(constant_id = 84) const bool NORMAL_FIELDS = false; // the scene has curvatures, and the frame sums normals of fields
+
+// Largest turn of the normal at the rim of a disc, as a tangent: curvatures of noisy points may be anything.
+const float MOST_TURN = 1.0;
+
+// Change of the normal of surfel i, as the eye sees it, per σ of its attribute kernel along the kernel's axes: 0 if its curvature is unknown. The
+// low-pass filter widens the kernel, not the disc: where it is as wide as the disc, a pixel's mean position on the disc is half as far from the
+// centre as the pixel is.
+mat2x3 normal_field(uint i, Splat splat) {
+    uint curvature = NORMAL_FIELDS && !is_billboard(i) ? curvature_of(i) : 0;
+    if (curvature == 0) return mat2x3(0.0);
+    vec3 normal = normal_of(i), to_eye = view.eye_hi.xyz - position_of(i) + view.eye_lo.xyz;
+    mat2x3 basis = tangents(normal), axes = basis;
+    float aspect = 1.0, radius = radius_of(i);
+    if (ELLIPSES) {
+        vec4 shape = ellipse_of(i);
+        axes = ellipse_axes(normal, shape);
+        aspect = shape.w;
+    }
+    mat2 square = square_of(splat, axes[0], aspect, normal, to_eye);
+    vec2 variance = variance_of(splat), filtered = sqrt(variance / attribute_variance(variance));
+    float largest = abs(largest_curvature(curvature)) * radius;
+    float sigma = min(1.0, MOST_TURN / largest) * radius / frame.cutoff;
+    mat2x3 field;
+    for (int k = 0; k < 2; k++) {
+        vec3 tangent = sigma * filtered[k] * (axes * square[k]);
+        field[k] = sign(splat.epsilon) * to_world(basis * turn_along(curvature, tangent * basis));
+    }
+    return field;
+}
