@@ -40,8 +40,10 @@ const uint NORMALS_WITH_CURVATURES = 5; // octahedral codes of 23 bits above the
 const uint NO_NORMAL = 0x80008000u, NO_COARSE_NORMAL = 0xffffffffu;
 const int COARSE_NORMAL = 1447, COARSE_VALUES = 2 * COARSE_NORMAL + 1; // largest coordinate of a code of 23 bits, and their number
 const uint CURVATURE_BITS = 9; // of curvatures beside normals; three more are those above the coordinates
-const int LEAST_CURVATURE = -9, CURVATURE_SIZES = 21, CURVATURE_LINES = 12, CURVATURE_SHAPES = 1 + 8 * CURVATURE_LINES;
-const int MANTISSA_OF_ROOT = 0x35; // of √2
+const int LEAST_CURVATURE = -9, CURVATURE_LINES = 12;
+// Shapes of one sign; shapes of either sign, and those of saddles, whose signs are equal but for a quarter turn.
+const int SIGNED_SHAPES = 1 + 3 * CURVATURE_LINES, CURVATURE_SHAPES = 2 * SIGNED_SHAPES + CURVATURE_LINES;
+const uint CURVATURE_ROOTS = 0x57351800u; // bytes: mantissas of the powers of 2¼
 
 DEFINE_COLOURS(stored_colour, STORED_COLOURS, colours, COLOUR_OFFSET, COLOUR_STRIDE)
 
@@ -128,16 +130,17 @@ bool is_two_sided(uint i) {
     return TWO_SIDED && stored_radius(i) < 0.0;
 }
 
-// Curvature of a disc with this radius, of a code that is not 0: a sign, one of 21 sizes, powers of √2 from 2^LEAST_CURVATURE on relative to the
-// radius, and one of the shapes (src/geometry/quantized/curvatures.rs).
+// Curvature of a disc with this radius, of a code that is not 0: one of 42 sizes, quarter powers of two from 2^LEAST_CURVATURE on relative to
+// the radius, by one of the shapes (src/geometry/quantized/curvatures.rs).
 uint decoded_curvature(int code, float radius) {
     int size = (code - 1) / CURVATURE_SHAPES, shape = (code - 1) % CURVATURE_SHAPES;
-    bool negative = size >= CURVATURE_SIZES;
-    size -= negative ? CURVATURE_SIZES : 0;
-    int exponent = clamp(127 + LEAST_CURVATURE + size / 2 - (int(floatBitsToUint(radius) >> 23) - 127), 1, 254);
-    int root = size % 2 != 0 ? MANTISSA_OF_ROOT : 0;
+    int exponent = clamp(127 + LEAST_CURVATURE + size / 4 - (int(floatBitsToUint(radius) >> 23) - 127), 1, 254);
+    int root = int(CURVATURE_ROOTS >> 8 * (size % 4)) & 0xff;
+    bool saddle = shape >= 2 * SIGNED_SHAPES, negative = shape >= SIGNED_SHAPES && !saddle;
+    // Saddles follow those of one sign.
+    shape -= saddle || negative ? SIGNED_SHAPES : 0;
     int steps = (shape - 1) / CURVATURE_LINES, line = (shape - 1) % CURVATURE_LINES;
-    int ratio = shape == 0 ? 127 : max(95 - 32 * steps, -127), angle = shape == 0 ? 0 : 127 * line / 6 - 127;
+    int ratio = shape == 0 ? 127 : max(63 - 64 * steps, -127), angle = shape == 0 ? 0 : 127 * line / 6 - 127;
     return (negative ? 0x80000000u : 0) | uint(exponent << 23 | root << 16 | (angle & 0xff) << 8 | ratio & 0xff);
 }
 

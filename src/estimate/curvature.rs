@@ -1,4 +1,4 @@
-//! Curvatures from the nearest points: how the normal turns towards them.
+//! Curvatures from the nearest points: how far a surface bends away from the tangent plane, or towards the normal.
 
 use super::sites::Sites;
 use crate::Progress;
@@ -19,9 +19,8 @@ const LEAST_REACH: f32 = 0.5;
 /// Number of surfels per task.
 const PIECE: usize = 1 << 12;
 
-/// The curvature at every surfel: the shape operator nearest to the turns of the normal towards its neighbours. Circles through the neighbours
-/// would tell curvatures, too, but positions of scans are noisier than normals, which are means over several points. Unknown at two-sided
-/// surfels and billboards.
+/// The curvature at every surfel: the shape operator nearest to the curvatures towards its neighbours. Unknown at two-sided surfels and
+/// billboards.
 pub(super) fn curvatures(
     surfels: &Surfels,
     sites: &Sites,
@@ -58,17 +57,16 @@ fn curvature_at(surfels: &Surfels, sites: &Sites, near: &[u32], i: usize) -> Cur
     let clip = surfels.clips.as_ref().and_then(|clips| clips.get(i));
     // Beyond a clip line is another surface.
     let is_kept = |offset: DVec3| clip.is_none_or(|clip| clip.keeps(f64::from(sites.unit) * offset));
-    let turns = near.iter().filter_map(|&other| {
+    let circles = near.iter().filter_map(|&other| {
         let point = sites.point[other as usize] as usize;
-        let to = surfels.normals[point].as_dvec3();
-        let is_same_side = !is_two_sided(point) && to.dot(normal) > SAME_SIDE;
+        let is_same_side = !is_two_sided(point) && surfels.normals[point].as_dvec3().dot(normal) > SAME_SIDE;
         let offset = (sites.at(other) - sites.at(site)).as_dvec3();
-        let [offset_in_plane, turn] = [offset, to].map(|v| DVec2::from_array(basis.map(|axis| axis.dot(v))));
-        let distance = offset_in_plane.length();
-        let tangent = offset_in_plane.try_normalize()?;
-        (is_same_side && is_kept(offset)).then_some((tangent, turn / distance))
+        // Through the centre and the neighbour, tangent to the disc.
+        let circle = -2.0 * offset.dot(normal) / offset.length_squared();
+        let tangent = DVec2::from_array(basis.map(|axis| axis.dot(offset))).try_normalize()?;
+        (is_same_side && is_kept(offset)).then_some((tangent, circle))
     });
-    Curvature::of_shape_operator(fit(turns) * (1.0 / f64::from(sites.unit)))
+    Curvature::of_shape_operator(fit(circles) * (1.0 / f64::from(sites.unit)))
 }
 
 /// Whether the neighbours of an ellipse go on along its longer axis, rather than being all of one line of a scan.
@@ -82,13 +80,12 @@ fn reach_across(surfels: &Surfels, sites: &Sites, near: &[u32], i: usize) -> boo
     farthest(major) >= LEAST_REACH * surfels.radii[i].min(farthest(surfels.normals[i].cross(major)))
 }
 
-/// The shape operator S with the least squares of S t − d, of unit tangents t and changes d of the normal in their directions per unit of length.
-fn fit(turns: impl Iterator<Item = (DVec2, DVec2)>) -> DMat2 {
+/// The shape operator S with the least squares of tᵀ S t − κ, of unit tangents t and curvatures κ in their directions.
+fn fit(circles: impl Iterator<Item = (DVec2, f64)>) -> DMat2 {
     let flat = (DMat3::from_diagonal(DVec3::splat(FLATNESS)), DVec3::ZERO);
-    let rows = turns
-        .flat_map(|(t, turn)| [(DVec3::new(t.x, t.y, 0.0), turn.x), (DVec3::new(0.0, t.x, t.y), turn.y)]);
-    let (matrix, right) = rows.fold(flat, |(matrix, right), (row, value)| {
-        (matrix + DMat3::from_cols(row * row.x, row * row.y, row * row.z), right + value * row)
+    let (matrix, right) = circles.fold(flat, |(matrix, right), (t, curvature)| {
+        let row = DVec3::new(t.x * t.x, 2.0 * t.x * t.y, t.y * t.y);
+        (matrix + DMat3::from_cols(row * row.x, row * row.y, row * row.z), right + curvature * row)
     });
     let [xx, xy, yy] = (matrix.inverse() * right).to_array();
     DMat2::from_cols_array(&[xx, xy, xy, yy])
@@ -165,15 +162,13 @@ mod tests {
 
     #[test]
     fn neighbours_in_one_line_tell_none_across_it() {
-        // A line of points with noise, along which the normal turns, beside which are no others.
+        // A line of points with noise, beside which are no others.
         let positions: Vec<Vec3> = (0..100)
             .map(|i| Vec3::new(i as f32, (i * 7 % 5) as f32 * 0.1, (i * 3 % 4) as f32 * -0.1))
             .collect();
         let of = |radius: f32| {
             let surfels = Surfels {
-                normals: (0..100)
-                    .map(|i| Vec3::new((i as f32 * 0.01).sin(), 0.0, (i as f32 * 0.01).cos()))
-                    .collect(),
+                normals: vec![Vec3::Z; positions.len()],
                 radii: vec![radius; positions.len()],
                 ellipses: Some(vec![Ellipse { major: Vec3::Y, aspect: 0.1 }; positions.len()]),
                 positions: positions.clone(),
@@ -219,8 +214,7 @@ mod tests {
 
     #[test]
     fn neighbours_in_one_direction_leave_the_others_flat() {
-        let turns = [(DVec2::X, 2.0 * DVec2::X), (DVec2::NEG_X, -2.0 * DVec2::X)];
-        let fitted = Curvature::of_shape_operator(fit(turns.into_iter()));
+        let fitted = Curvature::of_shape_operator(fit([(DVec2::X, 2.0), (DVec2::NEG_X, 2.0)].into_iter()));
         assert!((fitted.along(DVec2::X) - 2.0).abs() < 0.02 && fitted.along(DVec2::Y).abs() < 0.02);
     }
 }

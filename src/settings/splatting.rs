@@ -195,7 +195,7 @@ impl Default for Splatting {
 }
 
 impl Splatting {
-    /// Whether kernels are Gaussians on discs in the tangent plane, which the curvature of a surface tells where they leave it.
+    /// Whether splats are discs in tangent planes with a Gaussian kernel: these read curvatures.
     pub fn has_gaussian_discs(&self) -> bool {
         self.footprint.is_in_tangent_plane() && self.kernel == Kernel::Gaussian
     }
