@@ -1,5 +1,5 @@
 // Linear normal fields: the normal of a splat varies over its disc by the curvature of the surface (Botsch, Spernat and Kobbelt 2004, *Phong
-// Splatting*, section 3).
+// Splatting*).
 
 #ifndef LIB_NORMAL_FIELD
 #define LIB_NORMAL_FIELD

@@ -50,6 +50,7 @@ pub(crate) mod resource;
 pub(crate) mod resources;
 mod scene_cache;
 pub(crate) mod scene_resources;
+pub(crate) mod scene_variant;
 pub(crate) mod selection;
 mod slicing;
 mod splat_buffers;

@@ -4,7 +4,8 @@
 
 use super::recording::{Frame, PreparedPass};
 use super::resource::Resource;
-use super::variant::{SceneVariant, Variant};
+use super::scene_variant::SceneVariant;
+use super::variant::Variant;
 use crate::vk::shaders::Module;
 use crate::vk::{Blend, Constants, DepthTest, Recorder, Topology};
 

@@ -3,7 +3,8 @@
 use super::methods::{Path, passes};
 use super::pass::{Commands, Pass, Program, Programs, Stages};
 use super::recording::{Pipeline, Pipelines as PassPipelines};
-use super::variant::{SceneVariant, Variant};
+use super::scene_variant::SceneVariant;
+use super::variant::Variant;
 use super::{pyramids, target_descriptions};
 use crate::error::Result;
 use crate::vk::shaders;

@@ -3,12 +3,13 @@
 use super::pass::{Commands, Domain, Pass, Programs, StepContext};
 use super::resource::Resource;
 use super::scene_resources::{InstanceRun, SceneResources};
+use super::scene_variant::SceneVariant;
 use super::splat_list::SplatList;
 use super::target_descriptions::is_cleared;
 use super::targets::RenderTargets;
 use super::tile_list::{PYRAMID_TILE, workgroups_at};
 use super::tile_rect::TileRect;
-use super::variant::{SceneVariant, Variant};
+use super::variant::Variant;
 use super::visible_clusters;
 use crate::vk::shaders::Module;
 use crate::vk::shaders::layout::{Chunk, Hierarchy};

@@ -3,9 +3,10 @@
 use super::pass::{Commands, Pass};
 use super::pipelines::Pipelines;
 use super::recording::PreparedPass;
+use super::scene_variant::SceneVariant;
 use super::targets::{HostBindings, RenderTargets};
 use super::uniforms;
-use super::variant::{SceneVariant, Variant};
+use super::variant::Variant;
 use crate::error::Result;
 use crate::scene::Scene;
 use crate::vk::shaders::resource;

@@ -4,7 +4,7 @@ use crate::frame::pass::{Commands, Domain, Pass, Program, Programs};
 use crate::frame::resource::Resource::{
     Attributes, Boxes, Counts, Order, ScreenClips, Splats, VisibleClusters,
 };
-use crate::frame::variant::SceneVariant;
+use crate::frame::scene_variant::SceneVariant;
 use crate::vk::shaders::{FOOTPRINT_COMPUTE, FOOTPRINT_TILES_COMPUTE, constant};
 
 /// One invocation per surfel; on the tile path of the visible clusters or, as its lists have no gaps, of the capacity.

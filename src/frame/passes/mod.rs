@@ -54,7 +54,8 @@ mod tests {
     use crate::frame::methods::{Path, passes};
     use crate::frame::pass::{Pass, Programs};
     use crate::frame::resource::Resource;
-    use crate::frame::variant::{SceneVariant, Variant};
+    use crate::frame::scene_variant::SceneVariant;
+    use crate::frame::variant::Variant;
     use crate::scene::{ColourStream, PrimitiveKinds, Streams, SurfelLayout};
     use crate::settings::Rasterizer;
     use crate::settings::methods::Method;

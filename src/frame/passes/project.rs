@@ -7,7 +7,7 @@ use crate::frame::pass::{Commands, Domain, DrawTargets, InitialContents, Pass, P
 use crate::frame::resource::Resource::{
     Counts, LargeTriangles, Nearest, NearestDepth, NearestId, VisibleClusters,
 };
-use crate::frame::variant::SceneVariant;
+use crate::frame::scene_variant::SceneVariant;
 use crate::vk::shaders::{
     POINTS_FRAGMENT, POINTS_VERTEX, PROJECT_COMPUTE, PROJECT_COUNT_ONLY_COMPUTE, PROJECT_LINES_COMPUTE,
     PROJECT_RASTER_POINTS_COMPUTE, PROJECT_TRIANGLES_COMPUTE, constant,

@@ -3,7 +3,7 @@
 
 use crate::frame::pass::{Commands, Domain, Pass, Program, Programs};
 use crate::frame::resource::Resource::{Boxes, Counts, OpenTiles, Splats, Visibility, VisibleClusters};
-use crate::frame::variant::SceneVariant;
+use crate::frame::scene_variant::SceneVariant;
 use crate::vk::shaders::{SIDES_COMPUTE, SIDES_TILES_COMPUTE, constant};
 
 /// One invocation per surfel; on the tile path of the visible clusters, or of the capacity.

@@ -274,7 +274,7 @@ impl Projector {
         Surfel { normal, major, aspect: 1.0, curvature: Curvature::default(), ..*surfel }
     }
 
-    /// See [`Splat::bend`]: the shape operator applied to the square's axes (Botsch, Spernat and Kobbelt 2004, *Phong Splatting*, section 3).
+    /// See [`Splat::bend`]: the shape operator applied to the square's axes (Botsch, Spernat and Kobbelt 2004, *Phong Splatting*).
     fn bend(&self, surfel: &Surfel, facing: f64) -> [DVec3; 2] {
         if !self.settings.has_normal_fields() {
             return [DVec3::ZERO; 2];

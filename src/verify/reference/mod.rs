@@ -22,6 +22,7 @@ mod coverage;
 mod depth_range;
 mod edl;
 mod ellipse;
+mod ellipse_distance;
 mod error_bounds;
 mod error_model;
 mod filter;
