@@ -111,7 +111,7 @@ void main() {
     if (CORNERS && !OVERLAP) weight *= bilinear_weight(corners, mat2(square.xy, square.zw), m);
     gl_FragDepth = ranked(key, rank);
     vec3 value = attribute0;
-    if (FRAME_NORMAL_FIELDS) value = normal_at(attribute0, field_of(attribute0, field_row), m);
+    if (FRAME_NORMAL_FIELDS) value += field_of(attribute0, field_row) * flat_kernel_coordinates();
     sum0 = weight * vec4(1.0, value);
     sum1 = weight * vec4(SUM_DEPTH ? frame.key_gain * key : 0.0, attribute1);
 }

@@ -16,7 +16,7 @@ struct Attributes {
     vec3 attribute0; // normal or colour: see lib/sums.glsl
     float weight;    // weight of the kernel without its amplitude
     vec3 attribute1; // colour, if attribute0 is a normal
-    mat2x3 field;    // of normals: see normal_at
+    mat2x3 field;    // of normals, per σ along the kernel's axes
     vec4 corners;    // CORNERS: see bilinear_weight
     vec3 square;     // first column, and the sign of the second
 };

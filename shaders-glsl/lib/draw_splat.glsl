@@ -120,6 +120,12 @@ void add_fragment_coverage() {
 }
 #endif
 
+// Kernel coordinates of the fragment's pixel by the affine map, σ: without the perspective of kernels in the tangent plane.
+vec2 flat_kernel_coordinates() {
+    vec2 e = gl_FragCoord.xy - frame.origin - anchor_offset.xy - anchor_offset.zw;
+    return vec2(dot(whitening.xy, e), dot(whitening.zw, e));
+}
+
 // Evaluates splat_fragment; discards the fragment if it is outside.
 void evaluate_fragment(out vec2 m, out float key, out float rank) {
     float key_centre = centre_key(plane_epsilon.xyz, plane_lo_disc.xyz, anchor_offset.zw);

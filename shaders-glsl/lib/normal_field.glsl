@@ -18,10 +18,13 @@ mat2x3 field_of(vec3 normal, vec4 stored) {
     return tangents(normal) * mat2(stored.xy, stored.zw);
 }
 
-// Normal of a field at the kernel coordinates m, σ; `field` is orthogonal to the unit normal.
-vec3 normal_at(vec3 normal, mat2x3 field, vec2 m) {
-    vec3 turn = field * m;
-    return (normal + turn) * inversesqrt(1.0 + dot(turn, turn));
+// Normals of a field on a tile, not of unit length: at the tile's first pixel, and their change per px along x and y. u and v are the affine map
+// to kernel coordinates, σ. Far from a thin splat they are as large as they can be without overflow in sums.
+mat3 normals_on_tile(vec3 normal, mat2x3 field, vec3 u, vec3 v) {
+    mat3 normals = field * transpose(mat2x3(u, v));
+    normals[0] += normal;
+    for (int k = 0; k < 3; k++) normals[k] = clamp(normals[k], -1e30, 1e30);
+    return normals;
 }
 
 #endif

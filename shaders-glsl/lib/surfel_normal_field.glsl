@@ -8,10 +8,10 @@ layout(constant_id = 84) const bool NORMAL_FIELDS = false; // the scene has curv
 
 // Largest turn of the normal at the rim of a disc, as a tangent: curvatures of noisy points may be anything.
 const float MOST_TURN = 1.0;
+// Factor of the low-pass filter's variance: see FIELD_FILTER in src/verify/reference/ellipse.rs.
+const float FIELD_FILTER = 16.0;
 
-// Change of the normal of surfel i, as the eye sees it, per σ of its attribute kernel along the kernel's axes: 0 if its curvature is unknown. The
-// low-pass filter widens the kernel, not the disc: where it is as wide as the disc, a pixel's mean position on the disc is half as far from the
-// centre as the pixel is.
+// Change of the normal of surfel i, as the eye sees it, per σ of its attribute kernel along the kernel's axes: 0 if its curvature is unknown.
 mat2x3 normal_field(uint i, Splat splat) {
     uint curvature = NORMAL_FIELDS && !is_billboard(i) ? curvature_of(i) : 0;
     if (curvature == 0) return mat2x3(0.0);
@@ -24,12 +24,13 @@ mat2x3 normal_field(uint i, Splat splat) {
         aspect = shape.w;
     }
     mat2 square = square_of(splat, axes[0], aspect, normal, to_eye);
-    vec2 variance = variance_of(splat), filtered = sqrt(variance / attribute_variance(variance));
+    vec2 variance = variance_of(splat), share = variance / attribute_variance(variance);
+    vec2 to_disc = sqrt(share) / mix(vec2(FIELD_FILTER), vec2(1.0), share);
     float largest = abs(largest_curvature(curvature)) * radius;
     float sigma = min(1.0, MOST_TURN / largest) * radius / frame.cutoff;
     mat2x3 field;
     for (int k = 0; k < 2; k++) {
-        vec3 tangent = sigma * filtered[k] * (axes * square[k]);
+        vec3 tangent = sigma * to_disc[k] * (axes * square[k]);
         field[k] = sign(splat.epsilon) * to_world(basis * turn_along(curvature, tangent * basis));
     }
     return field;

@@ -9,14 +9,15 @@ vec4 tile_sums0[ROWS], tile_sums1[ROWS]; // see lib/sums.glsl
 // κ below which all pixels of the tile are occluded.
 float attribute_cull_key;
 
-// Adds a splat to the sums, if `is_splat`; `attribute0` is (normal or colour, weight).
+// Adds a splat to the sums, if `is_splat`; `attribute0` is (normal or colour, weight). With fields, the normal is that of the tile's first pixel,
+// and `change` is per px along x and y.
 void add_attributes(
-    TileSplat splat, vec4 attribute0, vec3 attribute1, mat2x3 field, vec4 corners, vec3 square, bool is_splat) {
+    TileSplat splat, vec4 attribute0, vec3 attribute1, mat2x3 change, vec4 corners, vec3 square, bool is_splat) {
     mat2 axes = mat2(square.xy, square.z * vec2(-square.y, square.x));
     for (uint r = 0; r < ROWS; r++) {
-        vec2 m;
+        vec2 d = vec2(lane_pixel(r)), m;
         float key, rank;
-        bool has_fragment = tile_fragment(splat, vec2(lane_pixel(r)), m, key, rank) && is_splat;
+        bool has_fragment = tile_fragment(splat, d, m, key, rank) && is_splat;
         // Pixels without a visible surface get no attributes: this footprint is wider.
         has_fragment = has_fragment && depths[r] > 0.0 && ranked(key, rank) >= depths[r];
 #ifdef BEHIND
@@ -27,8 +28,7 @@ void add_attributes(
         if (FRAME_CORNERS && !OVERLAP) weight *= bilinear_weight(corners, axes, m);
         weight = has_fragment ? weight : 0.0;
         vec3 value = attribute0.xyz;
-        // Far outside a thin splat m is so large that the normal would be NaN.
-        if (FRAME_NORMAL_FIELDS) value = normal_at(value, field, has_fragment ? m : vec2(0.0));
+        if (FRAME_NORMAL_FIELDS) value = (value + change[0] * d.x) + change[1] * d.y;
         tile_sums0[r] += vec4(weight, weight * value);
         tile_sums1[r] += vec4(has_fragment ? weight * frame.key_gain * key : 0.0, weight * attribute1);
     }
@@ -39,20 +39,25 @@ void add_attribute_batch(uint count, uint id, uvec2 origin) {
     vec2 variance = attribute_variance(variance_of(splat));
     TileSplat lane_splat = splat_on_tile(ellipse_of(splat, variance, clip_of(id)), vec2(origin) + 0.5);
     Attributes attributes = attributes_of(id);
+    mat3 normals = mat3(0.0);
+    if (FRAME_NORMAL_FIELDS) {
+        normals = normals_on_tile(attributes.attribute0, attributes.field, lane_splat.kernel.u, lane_splat.kernel.v);
+        attributes.attribute0 = normals[0];
+    }
     vec4 attribute0 = vec4(attributes.attribute0, OVERLAP ? 1.0 : attributes.weight * amplitude_of(splat, variance));
     // Lanes beyond the batch may hold NaN, which a weight of 0 would not cancel.
     attribute0 = lane < count ? attribute0 : vec4(0.0);
     attributes.attribute1 = lane < count ? attributes.attribute1 : vec3(0.0);
-    attributes.field = lane < count ? attributes.field : mat2x3(0.0);
+    mat2x3 lane_change = lane < count ? mat2x3(normals[1], normals[2]) : mat2x3(0.0);
     uint s = 0;
     do {
         for (uint k = 0; k < UNROLLED; k++) {
             vec3 attribute1 = WIDE_SUMS1 ? shuffle(attributes.attribute1, s + k) : vec3(0.0);
-            mat2x3 field = mat2x3(0.0);
-            if (FRAME_NORMAL_FIELDS) field = mat2x3(shuffle(attributes.field[0], s + k), shuffle(attributes.field[1], s + k));
+            mat2x3 change = mat2x3(0.0);
+            if (FRAME_NORMAL_FIELDS) change = mat2x3(shuffle(lane_change[0], s + k), shuffle(lane_change[1], s + k));
             vec4 corners = FRAME_CORNERS ? shuffle(attributes.corners, s + k) : vec4(1.0);
             vec3 square = FRAME_CORNERS ? shuffle(attributes.square, s + k) : vec3(1.0);
-            add_attributes(shuffle(lane_splat, s + k), shuffle(attribute0, s + k), attribute1, field, corners, square,
+            add_attributes(shuffle(lane_splat, s + k), shuffle(attribute0, s + k), attribute1, change, corners, square,
                 s + k < count);
         }
         s += UNROLLED;

@@ -57,7 +57,7 @@ pub(super) fn pass(
         band.inside(&ellipse, |hit| {
             let Some(depth) = projector.depth_of(splat, hit.at) else { return };
             if counts(hit.index, hit.rank(depth)) {
-                let (normal, weight) = (ellipse.normal(hit.in_kernel), ellipse.weight(hit.in_kernel));
+                let (normal, weight) = (ellipse.normal(hit.offset), ellipse.weight(hit.in_kernel));
                 sums[hit.index] += Sums::of(projector, splat, normal, weight, depth);
             }
         });

@@ -21,6 +21,11 @@ const ROUNDING: f64 = 4.0 / (1 << 24) as f64;
 /// Half the side of a pixel, px.
 pub(super) const HALF_PIXEL: f64 = 0.5;
 
+/// Factor of the low-pass filter's variance H in normal fields. The filter widens a splat, not its disc: the points of the disc that it sums in a
+/// pixel are, in the mean, at V (V + H)⁻¹ times the pixel's offset. By this factor on H, fields vanish in splats of few pixels too, which blending
+/// smooths enough and whose curvatures show the noise of scans.
+const FIELD_FILTER: f64 = 16.0;
+
 /// Least exponent of a Confetti kernel.
 const LEAST_EXPONENT: f64 = -10.0;
 
@@ -59,8 +64,8 @@ pub(super) struct Ellipse {
     /// Unit normal at the centre, and its change: see [`Splat::bend`].
     pub normal: DVec3,
     pub bend: [DVec3; 2],
-    /// 1-σ lengths of the unfiltered kernel divided by those of the kernel.
-    pub unfiltered: DVec2,
+    /// The place on the disc whose normal a pixel has, in σ of the unfiltered kernel, divided by the pixel's in the kernel, σ, along either axis.
+    pub to_disc: DVec2,
     /// See [`Projector::clip_reach`].
     pub clip_reach: f64,
     /// See [`Splat::turn`].
@@ -129,7 +134,7 @@ impl Ellipse {
             square_to_kernel: square_to_kernel(splat, axis),
             normal: splat.normal,
             bend: splat.bend,
-            unfiltered: DVec2::new((major / variance.x).sqrt(), (minor / variance.y).sqrt()),
+            to_disc: DVec2::new(to_disc(major / variance.x), to_disc(minor / variance.y)),
             clip_reach: projector.clip_reach(),
             turn: splat.turn,
         }
@@ -222,11 +227,10 @@ impl Ellipse {
         self.amplitude * (-self.exponent(m.length())).exp() * self.normalization(m)
     }
 
-    /// Unit normal at the position `m` in the kernel, σ. The low-pass filter H widens the kernel, not the disc: the points of the disc that it sums
-    /// in a pixel are, in the mean, at V (V + H)⁻¹ times the pixel's offset from the centre.
-    pub fn normal(&self, m: DVec2) -> DVec3 {
-        let on_disc = self.square_to_kernel.transpose() * (self.unfiltered * m);
-        (self.normal + on_disc.x * self.bend[0] + on_disc.y * self.bend[1]).normalize()
+    /// Normal at the offset `e` from the centre, px: affine in it, of unit length at the centre.
+    pub fn normal(&self, offset: DVec2) -> DVec3 {
+        let on_disc = self.square_to_kernel.transpose() * (self.to_disc * (self.to_axes * offset));
+        self.normal + on_disc.x * self.bend[0] + on_disc.y * self.bend[1]
     }
 
     /// Normalization weight at the position `m` in the kernel, σ: bilinear in its square (ren2002 section 7.2).
@@ -331,6 +335,11 @@ fn to_axes(axis: DVec2, sigma: DVec2) -> DMat2 {
     DMat2::from_cols(axis / sigma.x, axis.perp() / sigma.y).transpose()
 }
 
+/// See [`Ellipse::to_disc`]: √V √V' / (V + [`FIELD_FILTER`] (V' − V)), of `share`, which is V / V'.
+fn to_disc(share: f64) -> f64 {
+    share.sqrt() / (share + FIELD_FILTER * (1.0 - share))
+}
+
 /// Maps the variance along an axis of a kernel to that of its visibility footprint, px².
 fn visible_variance(projector: &Projector) -> impl Fn(f64) -> f64 {
     let least = f64::from(projector.settings.least_lowpass());
@@ -385,7 +394,7 @@ mod tests {
             square_to_kernel: DMat2::IDENTITY,
             normal: DVec3::Z,
             bend: [DVec3::ZERO; 2],
-            unfiltered: DVec2::ONE,
+            to_disc: DVec2::ONE,
             clip_reach: 0.0,
             turn: None,
         }

@@ -25,6 +25,8 @@ pub(super) struct Candidate<'a> {
     /// The distance that float32 rounds it by.
     resolved: f64,
     ellipse: &'a Ellipse,
+    /// Offset of the pixel's centre from the splat's, px.
+    offset: DVec2,
     /// Position of the pixel's centre in the kernel, σ.
     in_kernel: DVec2,
     /// Whether the pixel is certainly inside the cut-off and the clip volume.
@@ -43,9 +45,9 @@ impl Candidate<'_> {
         Rank { clipped: self.clipped, depth }
     }
 
-    /// Unit normal of the splat at the pixel.
+    /// Normal of the splat at the pixel: see [`Ellipse::normal`].
     pub fn normal(&self) -> DVec3 {
-        self.ellipse.normal(self.in_kernel)
+        self.ellipse.normal(self.offset)
     }
 
     /// Error bound of the depth in a comparison.
@@ -158,6 +160,7 @@ impl<'a> ErrorModel<'a> {
                         depth_error,
                         resolved: self.resolved(depth),
                         ellipse: &ellipse,
+                        offset: hit.offset,
                         in_kernel: hit.in_kernel,
                         certain: splat.certain && certain && !near_rim && !side.near && beyond > unsure,
                         clipped: side.clipped,

@@ -39,6 +39,7 @@ const SUM: f64 = 4.0;
 pub(super) struct RoundingSums {
     weight: f64,
     normal: DVec3,
+    normal_length: f64,
     weight_error: f64,
     half_ulps: f64,
     /// Weight of the splats in the mean depth: divided by the depth in perspective.
@@ -55,9 +56,11 @@ impl RoundingSums {
         let depth = c.depth;
         let depth_weight =
             if model.projector.depth.perspective { weight.value / depth } else { weight.value };
+        let normal = weight.value * c.normal();
         Self {
             weight: weight.value,
-            normal: weight.value * c.normal(),
+            normal,
+            normal_length: normal.length(),
             weight_error: weight.value * weight.error,
             half_ulps: weight.value * weight.half_ulps,
             depth_weight,
@@ -70,7 +73,7 @@ impl RoundingSums {
 
     /// The bounds.
     pub fn bound(&self) -> RoundingBound {
-        let spread_of_normals = self.weight / self.normal.length();
+        let spread_of_normals = self.normal_length / self.normal.length();
         let half_ulps = HALF_UNIT * (SUM + self.half_ulps / self.weight);
         let normal_sum = if self.weight > 0.0 { half_ulps * spread_of_normals } else { 0.0 };
         if self.weight_error == 0.0 {
@@ -95,6 +98,7 @@ impl std::ops::AddAssign for RoundingSums {
     fn add_assign(&mut self, other: Self) {
         self.weight += other.weight;
         self.normal += other.normal;
+        self.normal_length += other.normal_length;
         self.weight_error += other.weight_error;
         self.half_ulps += other.half_ulps;
         self.depth_weight += other.depth_weight;
