@@ -1,4 +1,5 @@
-//! Curvatures from the nearest points: how far a surface bends away from the tangent plane, or towards the normal.
+//! Curvatures from the nearest points: how far a surface bends away from the tangent plane or towards the normal, or how its
+//! normals turn.
 
 use super::sites::Sites;
 use crate::Progress;
@@ -19,11 +20,21 @@ const LEAST_REACH: f32 = 0.5;
 /// Number of surfels per task.
 const PIECE: usize = 1 << 12;
 
+/// What tells the curvature of a surface.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Bend {
+    /// Where neighbours are: of points.
+    Positions,
+    /// How neighbours' normals differ: of surfels on triangles, which are flat, and have normals between those of the corners.
+    Normals,
+}
+
 /// The curvature at every surfel: the shape operator nearest to the curvatures towards its neighbours. Unknown at two-sided surfels and
 /// billboards.
 pub(super) fn curvatures(
     surfels: &Surfels,
     sites: &Sites,
+    bend: Bend,
     progress: &dyn Progress,
 ) -> Result<Vec<Curvature>> {
     let mut curvatures = vec![Curvature::default(); surfels.len()];
@@ -34,7 +45,7 @@ pub(super) fn curvatures(
         for (curvature, i) in curvatures.iter_mut().zip(first..) {
             near.clear();
             near.extend(sites.nearest(sites.of_point[i], NEIGHBOURS));
-            *curvature = curvature_at(surfels, sites, &near, i);
+            *curvature = curvature_at(surfels, sites, bend, &near, i);
         }
         let piece = curvatures.len() as u64;
         progress.at("estimating curvatures", done.fetch_add(piece, Ordering::Relaxed) + piece, total);
@@ -43,7 +54,7 @@ pub(super) fn curvatures(
     Ok(curvatures)
 }
 
-fn curvature_at(surfels: &Surfels, sites: &Sites, near: &[u32], i: usize) -> Curvature {
+fn curvature_at(surfels: &Surfels, sites: &Sites, bend: Bend, near: &[u32], i: usize) -> Curvature {
     let normal = surfels.normals[i].as_dvec3();
     let is_two_sided = |i: usize| surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[i]);
     if is_two_sided(i) || surfels.is_billboard(i) {
@@ -57,16 +68,29 @@ fn curvature_at(surfels: &Surfels, sites: &Sites, near: &[u32], i: usize) -> Cur
     let clip = surfels.clips.as_ref().and_then(|clips| clips.get(i));
     // Beyond a clip line is another surface.
     let is_kept = |offset: DVec3| clip.is_none_or(|clip| clip.keeps(f64::from(sites.unit) * offset));
-    let circles = near.iter().filter_map(|&other| {
+    let in_plane = |vector: DVec3| DVec2::from_array(basis.map(|axis| axis.dot(vector)));
+    let neighbours = near.iter().filter_map(|&other| {
         let point = sites.point[other as usize] as usize;
-        let is_same_side = !is_two_sided(point) && surfels.normals[point].as_dvec3().dot(normal) > SAME_SIDE;
+        let other_normal = surfels.normals[point].as_dvec3();
+        let is_same_side = !is_two_sided(point) && other_normal.dot(normal) > SAME_SIDE;
         let offset = (sites.at(other) - sites.at(site)).as_dvec3();
-        // Through the centre and the neighbour, tangent to the disc.
-        let circle = -2.0 * offset.dot(normal) / offset.length_squared();
-        let tangent = DVec2::from_array(basis.map(|axis| axis.dot(offset))).try_normalize()?;
-        (is_same_side && is_kept(offset)).then_some((tangent, circle))
+        (is_same_side && is_kept(offset)).then_some((offset, other_normal))
     });
-    Curvature::of_shape_operator(fit(circles) * (1.0 / f64::from(sites.unit)))
+    let operator = match bend {
+        Bend::Positions => fit(neighbours.filter_map(|(offset, _)| {
+            let t = in_plane(offset).try_normalize()?;
+            // Of the circle through the centre and the neighbour, tangent to the disc: tᵀ S t.
+            let circle = -2.0 * offset.dot(normal) / offset.length_squared();
+            Some((DVec3::new(t.x * t.x, 2.0 * t.x * t.y, t.y * t.y), circle))
+        })),
+        Bend::Normals => fit(neighbours.flat_map(|(offset, other_normal)| {
+            let (offset, turn) = (in_plane(offset), in_plane(other_normal));
+            let (t, turn) = (offset.normalize_or_zero(), turn / offset.length().max(f64::MIN_POSITIVE));
+            // Both components of S t.
+            [(DVec3::new(t.x, t.y, 0.0), turn.x), (DVec3::new(0.0, t.x, t.y), turn.y)]
+        })),
+    };
+    Curvature::of_shape_operator(operator * (1.0 / f64::from(sites.unit)))
 }
 
 /// Whether the neighbours of an ellipse go on along its longer axis, rather than being all of one line of a scan.
@@ -80,12 +104,11 @@ fn reach_across(surfels: &Surfels, sites: &Sites, near: &[u32], i: usize) -> boo
     farthest(major) >= LEAST_REACH * surfels.radii[i].min(farthest(surfels.normals[i].cross(major)))
 }
 
-/// The shape operator S with the least squares of tᵀ S t − κ, of unit tangents t and curvatures κ in their directions.
-fn fit(circles: impl Iterator<Item = (DVec2, f64)>) -> DMat2 {
+/// The shape operator S with the least squares of row · (Sxx, Sxy, Syy) − value, of unit tangents.
+fn fit(equations: impl Iterator<Item = (DVec3, f64)>) -> DMat2 {
     let flat = (DMat3::from_diagonal(DVec3::splat(FLATNESS)), DVec3::ZERO);
-    let (matrix, right) = circles.fold(flat, |(matrix, right), (t, curvature)| {
-        let row = DVec3::new(t.x * t.x, 2.0 * t.x * t.y, t.y * t.y);
-        (matrix + DMat3::from_cols(row * row.x, row * row.y, row * row.z), right + curvature * row)
+    let (matrix, right) = equations.fold(flat, |(matrix, right), (row, value)| {
+        (matrix + DMat3::from_cols(row * row.x, row * row.y, row * row.z), right + value * row)
     });
     let [xx, xy, yy] = (matrix.inverse() * right).to_array();
     DMat2::from_cols_array(&[xx, xy, xy, yy])
@@ -98,6 +121,10 @@ mod tests {
 
     /// The curvatures of `count` points of a surface, given by the position and normal at parameters from 0 to 1.
     fn of(count: usize, surface: impl Fn(f32, f32) -> [Vec3; 2]) -> Vec<Curvature> {
+        by(Bend::Positions, count, surface)
+    }
+
+    fn by(bend: Bend, count: usize, surface: impl Fn(f32, f32) -> [Vec3; 2]) -> Vec<Curvature> {
         let at = |i: usize| surface((i as f32 + 0.5) / count as f32, (i as f32 * 0.618_034).fract());
         let surfels = Surfels {
             positions: (0..count).map(|i| at(i)[0]).collect(),
@@ -106,7 +133,7 @@ mod tests {
             ..Surfels::default()
         };
         let sites = Sites::new(&surfels.positions, &()).unwrap();
-        curvatures(&surfels, &sites, &()).unwrap()
+        curvatures(&surfels, &sites, bend, &()).unwrap()
     }
 
     fn middle(values: impl Iterator<Item = f64>) -> f64 {
@@ -175,7 +202,7 @@ mod tests {
                 ..Surfels::default()
             };
             let sites = Sites::new(&surfels.positions, &()).unwrap();
-            curvatures(&surfels, &sites, &()).unwrap()
+            curvatures(&surfels, &sites, Bend::Positions, &()).unwrap()
         };
         assert!(of(10.0).iter().all(|k| *k == Curvature::default()));
         assert!(of(0.1).iter().any(|k| *k != Curvature::default()));
@@ -194,8 +221,23 @@ mod tests {
             ..Surfels::default()
         };
         let sites = Sites::new(&surfels.positions, &()).unwrap();
-        let found = curvatures(&surfels, &sites, &()).unwrap();
+        let found = curvatures(&surfels, &sites, Bend::Positions, &()).unwrap();
         assert!(found.iter().all(|curvature| curvature.largest() > 0.5));
+    }
+
+    #[test]
+    fn normals_bend_what_is_flat() {
+        let saddle = |s: f32, t: f32| {
+            let (x, y) = (0.02 * (s - 0.5), 0.02 * (t - 0.5));
+            [Vec3::new(x, y, 0.0), Vec3::new(3.0 * x, -y, 1.0).normalize()]
+        };
+        let of_normals = by(Bend::Normals, 1000, saddle);
+        for (axis, curvature) in [(DVec2::X, 3.0), (DVec2::Y, -1.0)] {
+            let worst = of_normals.iter().map(|k| (k.along(axis) - curvature).abs()).fold(0.0, f64::max);
+            assert!(worst < 0.1, "{axis}: {worst}");
+        }
+        let of_positions = of(1000, saddle);
+        assert!(middle(of_positions.iter().map(|k| k.along(DVec2::X).abs())) < 1.6);
     }
 
     #[test]
@@ -214,7 +256,7 @@ mod tests {
 
     #[test]
     fn neighbours_in_one_direction_leave_the_others_flat() {
-        let fitted = Curvature::of_shape_operator(fit([(DVec2::X, 2.0), (DVec2::NEG_X, 2.0)].into_iter()));
+        let fitted = Curvature::of_shape_operator(fit([(DVec3::X, 2.0), (DVec3::X, 2.0)].into_iter()));
         assert!((fitted.along(DVec2::X) - 2.0).abs() < 0.02 && fitted.along(DVec2::Y).abs() < 0.02);
     }
 }

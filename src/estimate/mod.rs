@@ -291,7 +291,11 @@ impl Cloud {
         let triangles = std::mem::take(&mut draft.triangles);
         let (mut surfels, mut estimated) = draft.finish(how)?;
         if let Some(sites) = sites.filter(|_| how.outlines) {
-            surfels.curvatures = Some(curvature::curvatures(&surfels, &sites, progress)?);
+            let bend = match estimated.vertices_replaced {
+                0 => curvature::Bend::Positions,
+                _ => curvature::Bend::Normals,
+            };
+            surfels.curvatures = Some(curvature::curvatures(&surfels, &sites, bend, progress)?);
             estimated.bounded = boundary::clip(&mut surfels, &triangles, &sites);
         }
         if let Some(angle) = how.sharp {
