@@ -179,7 +179,8 @@ fn framed(
     let extent = extent.ok_or_else(|| undrawn::nothing(&names(args), &loaded.model))?;
     let turned = args.turntable.map(|_| extent.turned_about(extent.centre(), loaded.up));
     let bar = colour_bar(args, loaded.coloured.as_ref(), shading, out)?;
-    let room = Room { size: args.size, bar: bar.as_ref().map_or(0, |bar| bar.width(args.size)) };
+    let bar_width = bar.as_ref().map_or(0, |bar| bar.width(args.size));
+    let room = Room { bar: bar_width, ..Room::whole(args.size) };
     let (pose, camera) =
         camera::make(&args.camera, file, turned.as_ref().unwrap_or(&extent), loaded.up, room)?;
     Ok(Framed { extent, pose, camera, bar })
