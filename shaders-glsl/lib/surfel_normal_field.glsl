@@ -9,7 +9,9 @@ layout(constant_id = 84) const bool NORMAL_FIELDS = false; // the scene has curv
 // Largest turn of the normal at the rim of a disc, as a tangent: curvatures of noisy points may be anything.
 const float MOST_TURN = 1.0;
 // Factor of the low-pass filter's variance: see FIELD_FILTER in src/verify/reference/ellipse.rs.
-const float FIELD_FILTER = 16.0;
+const float FIELD_FILTER = 7.0;
+// Variance up to which fields are 0, in variances of the low-pass filter: see FLAT_VARIANCE in src/settings/splatting.rs.
+const float FLAT_VARIANCE = 7.0;
 
 // Change of the normal of surfel i, as the eye sees it, per σ of its attribute kernel along the kernel's axes: 0 if its curvature is unknown.
 mat2x3 normal_field(uint i, Splat splat) {
@@ -25,7 +27,9 @@ mat2x3 normal_field(uint i, Splat splat) {
     }
     mat2 square = square_of(splat, axes[0], aspect, normal, to_eye);
     vec2 variance = variance_of(splat), share = variance / attribute_variance(variance);
-    vec2 to_disc = sqrt(share) / mix(vec2(FIELD_FILTER), vec2(1.0), share);
+    vec2 kept = max(share - FLAT_VARIANCE * (1.0 - share), 0.0);
+    // Where the root is of less than ½, nothing is kept.
+    vec2 to_disc = kept / (sqrt(max(share, 0.5)) * mix(vec2(FIELD_FILTER), vec2(1.0), share));
     float largest = abs(largest_curvature(curvature)) * radius;
     float sigma = min(1.0, MOST_TURN / largest) * radius / frame.cutoff;
     mat2x3 field;

@@ -2,6 +2,7 @@
 
 use super::distinct::Distinct;
 use super::group_culling::GroupCulling;
+use super::normal_fields::may_bend;
 use super::rasterizer::{Fit, rasterizer_of, width_of_sums};
 use super::renderer::RenderOptions;
 use super::scene_resources::batches_of;
@@ -90,6 +91,7 @@ pub fn describe(
     let base = Variant { workgroup: workgroup.unwrap_or_default(), ..base(&options, rasterizer) };
     let surfels = scenes.iter().map(|placed| placed.scene.count()).sum();
     let variant = Variant { distant: uniforms.is_distant(), ..base }
+        .with_normal_fields(base.normal_fields && may_bend(scenes, camera, settings, options.size))
         .with_slices(sliced)
         .with_occlusion_culling(surfels, options.size.map(u64::from).iter().product());
     check_lookups(&variant, scenes)?;

@@ -36,6 +36,7 @@ mod group_culling;
 mod list_layout;
 mod list_range;
 mod methods;
+mod normal_fields;
 pub(crate) mod pass;
 pub(crate) mod passes;
 pub(crate) mod pipelines;

@@ -201,18 +201,23 @@ impl Variant {
         Self { occlusion_culling: can && surfels > pixels, ..self }
     }
 
-    /// The variants that frames choose by camera, size and density alone, this one among them: of distant scenes or not, with
-    /// occlusion culling or not, and with slices or not, if frames `may_slice`.
+    /// The variant in frames whose normal fields may differ from 0, or not: see [`super::normal_fields`].
+    pub fn with_normal_fields(self, are_bent: bool) -> Self {
+        Self { normal_fields: self.normal_fields && are_bent, ..self }
+    }
+
+    /// The variants that frames choose by camera, size and density alone, this one among them: of distant scenes or not, with normal fields or
+    /// not, with occlusion culling or not, and with slices or not, if frames `may_slice`.
     pub fn choices(self, may_slice: bool) -> Vec<Self> {
         let mut list = vec![self];
-        for (distant, sliced, culled) in [false, true]
-            .into_iter()
-            .flat_map(|distant| [(distant, false, 0), (distant, false, 1), (distant, true, 0)])
-        {
-            let possible = (self.perspective || !distant) && (may_slice || !sliced);
-            let variant = Self { distant, ..self }.with_slices(sliced).with_occlusion_culling(culled, 0);
-            if possible && !list.contains(&variant) {
-                list.push(variant);
+        for (distant, bent) in [(false, true), (false, false), (true, true), (true, false)] {
+            for (sliced, culled) in [(false, 0), (false, 1), (true, 0)] {
+                let possible = (self.perspective || !distant) && (may_slice || !sliced);
+                let variant = Self { distant, ..self }.with_normal_fields(bent);
+                let variant = variant.with_slices(sliced).with_occlusion_culling(culled, 0);
+                if possible && !list.contains(&variant) {
+                    list.push(variant);
+                }
             }
         }
         list

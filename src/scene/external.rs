@@ -69,6 +69,7 @@ impl Scene {
             texture: None,
             materials: None,
             largest: external.largest.map(|radius| AtomicU32::new(radius.to_bits())),
+            largest_curved: AtomicU32::new(0.0_f32.to_bits()),
             colour_stream: external.colour_stream,
             chunks: chunks(external.capacity, capabilities, stride),
             alignment: capabilities.storage_buffer_alignment,

@@ -151,6 +151,18 @@ impl<'a> Placed<'a> {
         let scale = self.placement.map_or(1.0, |placement| placement.scale());
         Some(scale * f64::from(self.scene.largest()?))
     }
+
+    /// The same of surfels with a curvature; 0 without any.
+    pub(crate) fn largest_curved(&self) -> f64 {
+        let scale = self.placement.map_or(1.0, |placement| placement.scale());
+        scale * f64::from(self.scene.largest_curved())
+    }
+
+    /// Bounds of these surfels with their radii; `None` if they may not hold.
+    pub(crate) fn curved_bounds(&self) -> Option<Bounds> {
+        let own = self.scene.curved_bounds()?;
+        Some(self.placement.map_or(own, |placement| placement.bounds(&own)))
+    }
 }
 
 /// Ids of the first points of placed scenes.

@@ -69,13 +69,27 @@ impl Scene {
 
     /// Bounds of all elements with their radii; `None` if the bounds were set, and may not hold.
     pub(crate) fn sure_bounds(&self) -> Option<Bounds> {
-        let largest = self.largest().filter(|_| self.bounds_hold.load(Ordering::Relaxed))?;
-        Some(self.bounds().grown(largest.into()))
+        self.bounds_with_radii(self.largest()?)
+    }
+
+    /// The same of the surfels with a curvature.
+    pub(crate) fn curved_bounds(&self) -> Option<Bounds> {
+        self.bounds_with_radii(self.largest_curved())
+    }
+
+    fn bounds_with_radii(&self, largest: f32) -> Option<Bounds> {
+        let hold = self.bounds_hold.load(Ordering::Relaxed);
+        hold.then(|| self.bounds().grown(largest.into()))
     }
 
     /// Upper bound of the radii, if known.
     pub(crate) fn largest(&self) -> Option<f32> {
         self.largest.as_ref().map(|bits| f32::from_bits(bits.load(Ordering::Relaxed)))
+    }
+
+    /// Upper bound of the radii of surfels with a curvature; 0 without any.
+    pub(crate) fn largest_curved(&self) -> f32 {
+        f32::from_bits(self.largest_curved.load(Ordering::Relaxed))
     }
 
     /// Whether the host owns the surfels' buffers.

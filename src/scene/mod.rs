@@ -22,7 +22,7 @@ mod weights;
 
 use crate::error::{Error, Result};
 use crate::geometry::{
-    Bounds, Camera, Colours, LevelTable, MostDrawn, Parts, Primitives, Quantized, RADIUS_ROUNDING,
+    Bounds, Camera, Colours, Curvature, LevelTable, MostDrawn, Parts, Primitives, Quantized, RADIUS_ROUNDING,
     SurfelFormat, Surfels, Texture,
 };
 use crate::vk::shaders::{Resource, resource};
@@ -75,6 +75,8 @@ pub struct Scene {
     origin: DVec3,
     /// Largest radius so far, as bits; `None` if it is not known.
     largest: Option<AtomicU32>,
+    /// The same of surfels with a curvature.
+    largest_curved: AtomicU32,
     /// Whether the host owns the surfels' buffers.
     of_host: bool,
     /// Order of the surfels.
@@ -157,7 +159,9 @@ impl Scene {
         let radii = marked_radii(surfels, invalid);
         let quantize = parts.format == SurfelFormat::Quantized;
         let codes = quantize.then(|| Quantized::of(surfels, &radii)).flatten();
-        let largest = codes.as_ref().map_or(1.0, |_| RADIUS_ROUNDING) * largest(&surfels.radii);
+        let rounding = codes.as_ref().map_or(1.0, |_| RADIUS_ROUNDING);
+        let largest = rounding * largest(&surfels.radii);
+        let largest_curved = rounding * largest_curved(surfels);
         let clips = codes.as_ref().map_or(surfels.clips.as_ref(), |codes| codes.clips.as_ref());
         let scene = Self {
             id: next_id(),
@@ -187,6 +191,7 @@ impl Scene {
             alignment: device.capabilities().storage_buffer_alignment,
             origin: parts.origin(),
             largest: Some(AtomicU32::new(largest.to_bits())),
+            largest_curved: AtomicU32::new(largest_curved.to_bits()),
             of_host: false,
             order,
             curve_box: order::bulk(&surfels.positions),
@@ -379,6 +384,13 @@ fn colour_bytes<'a>(
 /// The largest valid radius; 0 if there is none.
 fn largest(radii: &[f32]) -> f32 {
     radii.iter().copied().filter(|radius| *radius <= Surfels::LARGEST).fold(0.0, f32::max)
+}
+
+/// The same of surfels with a curvature.
+fn largest_curved(surfels: &Surfels) -> f32 {
+    let curvatures = surfels.curvatures.iter().flatten();
+    let curved = curvatures.zip(&surfels.radii).filter(|(curvature, _)| **curvature != Curvature::default());
+    curved.fold(0.0, |most, (_, radius)| most.max(largest(&[*radius])))
 }
 
 /// A unique scene id.

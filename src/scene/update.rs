@@ -70,6 +70,12 @@ impl Scene {
             // The bits of non-negative floats are in the order of the floats.
             known.fetch_max(largest(radii).to_bits(), Ordering::Relaxed);
         }
+        if self.surfels.curvatures {
+            // New curvatures may be of any known radius.
+            let all = changes.curvatures.and(self.largest());
+            let curved = changes.radii.map(largest).or(all).unwrap_or_default();
+            self.largest_curved.fetch_max(curved.to_bits(), Ordering::Relaxed);
+        }
         let clusters = self.clusters.as_ref();
         let clusters = clusters.map(|clusters| clusters.change(uploads, range, changes, self.capacity()));
         let clusters = clusters.transpose()?.flatten();

@@ -10,7 +10,9 @@ pub mod pull_push;
 pub mod splatting;
 
 use crate::settings::pull_push::{PullPush, Rules};
-use crate::settings::splatting::{Filter, Footprint, Normalization, Shade, Splatting, Visibility};
+use crate::settings::splatting::{
+    FLAT_VARIANCE, Filter, Footprint, Normalization, Shade, Splatting, Visibility,
+};
 pub use choice::Choice;
 pub use hierarchy::Hierarchy;
 pub use lighting::{DirectionalLight, Lighting};
@@ -203,6 +205,16 @@ impl Settings {
             && self.pull_push.is_none()
             && self.splatting.visibility != Visibility::Nearest
             && self.splatting.has_gaussian_discs()
+    }
+
+    /// Variance of a splat before filters, px², up to which a normal field is 0 along that axis.
+    pub(crate) fn flat_variance(&self) -> f64 {
+        let [least, filter] = [self.least_lowpass(), self.attribute_lowpass()].map(f64::from);
+        match self.widen {
+            Widen::All => FLAT_VARIANCE * filter,
+            // The larger of `filter` and V + `least` is at least V + V / FLAT_VARIANCE.
+            Widen::Small => (FLAT_VARIANCE * least).max(filter * FLAT_VARIANCE / (FLAT_VARIANCE + 1.0)),
+        }
     }
 
     /// The settings by which subpasses of a host draw: over the host's picture, without the filter of pixels, eye-dome lighting and ambient

@@ -180,6 +180,9 @@ pub enum Shade {
     NormalField = 3,
 }
 
+/// Factor of the variance that filters add to a splat: normal fields are 0 along axes of no larger variance.
+pub(crate) const FLAT_VARIANCE: f64 = 7.0;
+
 impl Default for Splatting {
     /// The choices of `perspective-ewa`.
     fn default() -> Self {
@@ -189,7 +192,7 @@ impl Default for Splatting {
             filter: Filter::Screen,
             visibility: Visibility::Ray,
             normalization: Normalization::Pixel,
-            shade: Shade::MeanNormal,
+            shade: Shade::NormalField,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Normals that vary over discs are those of the surface, of which discs of one normal make facets.
 
-use crate::support::gpu::{assert_silent, device, render};
+use crate::support::gpu::{assert_silent, device, new_device, render};
 use glam::{DVec3, Vec3};
 use std::f64::consts::TAU;
 use surfel::estimate::Estimate;
@@ -9,7 +9,7 @@ use surfel::settings::Shading;
 use surfel::settings::methods::perspective_ewa;
 use surfel::settings::splatting::{Filter, Footprint, Shade, Splatting};
 use surfel::vk::DeviceLimits;
-use surfel::{Outputs, Rasterizer, RenderOptions, Settings};
+use surfel::{Outputs, Rasterizer, RenderOptions, Renderer, Scene, Settings};
 
 /// Width and height of the pictures, px.
 const SIDE: u32 = 160;
@@ -82,6 +82,28 @@ fn large_discs_have_the_normals_of_the_surface() {
             println!("{footprint:?} {rasterizer:?}: normals are off by {field:.3}°, of facets {facets:.3}°");
             assert!(field < MOST_OF_FACETS * facets, "{field} {facets}");
         }
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn frames_of_small_discs_have_no_fields() {
+    let Some(device) = new_device(DeviceLimits::default()) else { return };
+    let camera = Camera::look_at(DVec3::Z * 4.0, DVec3::ZERO, DVec3::Y, FOV.to_radians(), 1.0, 1e-3).unwrap();
+    let scene = Scene::upload(&device, &sphere(2000, 1.0)).unwrap();
+    let draw = |side: u32, shade| {
+        let splatting = Splatting { shade, ..Splatting::default() };
+        let settings = Settings { splatting, shading: Shading::Lit, ..perspective_ewa::METHOD.settings() };
+        let options = RenderOptions { size: [side; 2], ..Default::default() };
+        let mut renderer = Renderer::new(&device, options).unwrap();
+        renderer.render_picture(&scene, &camera, &settings).unwrap().0
+    };
+    for (side, has_fields) in [(16, false), (SIDE, true)] {
+        let without = draw(side, Shade::MeanNormal);
+        let made = device.usage().pipelines;
+        let with = draw(side, Shade::NormalField);
+        assert_eq!(device.usage().pipelines > made, has_fields, "pipelines at {side} px");
+        assert_eq!(with != without, has_fields, "pictures of {side} px");
     }
     assert_silent(&device);
 }

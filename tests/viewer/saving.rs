@@ -53,7 +53,7 @@ fn a_saved_picture_has_the_level_of_detail_of_the_window() {
         return;
     };
     // Several points share a pixel.
-    let what = format!("scene:bumpy-sphere?points=60000 --size 120x90 {DRAW}");
+    let what = format!("scene:bumpy-sphere?points=60000 --size 80x60 {DRAW}");
     let mut view = View::open(&display, &program, &format!("{what} -q --screenshots ."));
     view.picture(|event| event["preview"] == false);
     display.press(&[key::CONTROL], u32::from('s'));

@@ -3,13 +3,14 @@
 //! ```text
 //! footprint    disc → the ellipse that its rim projects to (§4.4), + H (equation 3)
 //! visibility   nearest tangent plane + ε along the viewing ray (§6, first pass)
-//! attribute    Σ w (n, rgb, 1/z) over the splats within ε (§6, second pass)
+//! attribute    Σ w (n + S u, rgb, 1/z) over the splats within ε (§6, second pass)
 //! normalize    / Σ w (§6, third pass), light, × the covered part of the pixel
 //! filter       ∗ most of H, after light, so that outlines are filtered, too
 //! ```
 //!
 //! Departs from the paper where measurements support it: a cut-off of 3.5 σ, a filter that widens only splats smaller than itself,
-//! lighting and most of the filter after blending, coverage of pixels, and culling of the far sides of surfaces. `perspective-ewa-paper` does not.
+//! lighting and most of the filter after blending, coverage of pixels, and culling of the far sides of surfaces; and normals vary over discs by
+//! the shape operator S (Botsch, Spernat, Kobbelt 2004). `perspective-ewa-paper` does not.
 
 use super::{Method, PIXEL_FILTER};
 use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
@@ -25,7 +26,7 @@ pub const METHOD: Method = Method {
         filter: Filter::Screen,
         visibility: Visibility::Ray,
         normalization: Normalization::Pixel,
-        shade: Shade::MeanNormal,
+        shade: Shade::NormalField,
     },
     pull_push: None,
     cutoff: 3.5,

@@ -4,7 +4,7 @@ use super::coverage::SOLID;
 use super::ellipse_distance::to_ellipse;
 use super::footprint::{ScreenClip, TurnLine};
 use super::{Projector, Splat};
-use crate::settings::splatting::{Footprint, Kernel};
+use crate::settings::splatting::{FLAT_VARIANCE, Footprint, Kernel};
 use crate::settings::{Alpha, Widen};
 use glam::{DMat2, DVec2, DVec3};
 use std::f64::consts::FRAC_PI_4;
@@ -22,9 +22,9 @@ const ROUNDING: f64 = 4.0 / (1 << 24) as f64;
 pub(super) const HALF_PIXEL: f64 = 0.5;
 
 /// Factor of the low-pass filter's variance H in normal fields. The filter widens a splat, not its disc: the points of the disc that it sums in a
-/// pixel are, in the mean, at V (V + H)⁻¹ times the pixel's offset. By this factor on H, fields vanish in splats of few pixels too, which blending
-/// smooths enough and whose curvatures show the noise of scans.
-const FIELD_FILTER: f64 = 16.0;
+/// pixel are, in the mean, at V (V + H)⁻¹ times the pixel's offset. By this factor on H, and by [`FLAT_VARIANCE`], fields vanish in splats of few
+/// pixels too, which blending smooths enough and whose curvatures show the noise of scans.
+const FIELD_FILTER: f64 = 7.0;
 
 /// Least exponent of a Confetti kernel.
 const LEAST_EXPONENT: f64 = -10.0;
@@ -335,9 +335,11 @@ fn to_axes(axis: DVec2, sigma: DVec2) -> DMat2 {
     DMat2::from_cols(axis / sigma.x, axis.perp() / sigma.y).transpose()
 }
 
-/// See [`Ellipse::to_disc`]: √V √V' / (V + [`FIELD_FILTER`] (V' − V)), of `share`, which is V / V'.
+/// See [`Ellipse::to_disc`]: (V − 7 H)⁺ √(V' / V) / (V + 7 H), of `share`, which is V / V', with H = V' − V.
 fn to_disc(share: f64) -> f64 {
-    share.sqrt() / (share + FIELD_FILTER * (1.0 - share))
+    let kept = (share - FLAT_VARIANCE * (1.0 - share)).max(0.0);
+    // Where the root is of less than ½, nothing is kept.
+    kept / (share.max(0.5).sqrt() * (share + FIELD_FILTER * (1.0 - share)))
 }
 
 /// Maps the variance along an axis of a kernel to that of its visibility footprint, px².
@@ -373,6 +375,7 @@ fn square_to_kernel(splat: &Splat, major: DVec2) -> DMat2 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::settings::Settings;
 
     /// An ellipse with axes of 3 and 0.5 px.
     fn ellipse() -> Ellipse {
@@ -398,6 +401,26 @@ mod tests {
             clip_reach: 0.0,
             turn: None,
         }
+    }
+
+    #[test]
+    fn fields_vanish_where_the_settings_say_so() {
+        for (cutoff, lowpass, pixel_filter) in
+            [(3.5, 1.0, 0.75), (3.5, 1.0, 0.0), (1.41, 0.2, 0.2), (2.0, 0.0, 0.0)]
+        {
+            for widen in [Widen::All, Widen::Small] {
+                let settings = Settings { cutoff, lowpass, pixel_filter, widen, ..Settings::default() };
+                let [least, filter] = [settings.least_lowpass(), settings.attribute_lowpass()].map(f64::from);
+                let share = |variance: f64| match widen {
+                    Widen::All => variance / (variance + filter),
+                    Widen::Small => variance / (variance + least).max(filter),
+                };
+                let flat = settings.flat_variance();
+                assert!(to_disc(0.0) == 0.0 && to_disc(share(0.999 * flat)) == 0.0, "{flat} {settings:?}");
+                assert!(to_disc(share(1.001 * flat)) > 0.0, "{flat} {settings:?}");
+            }
+        }
+        assert_eq!(to_disc(1.0), 1.0);
     }
 
     #[test]
