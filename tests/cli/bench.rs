@@ -19,7 +19,8 @@ fn an_input_is_measured_stored_and_reported_again() {
     };
     let methods = if_whole("perspective-ewa,pull-push", "perspective-ewa");
     let counts = if_whole("1000,3000", "1000");
-    let arguments = &format!("scene:torus --points {counts} --method {methods} --with --lod=1 --size 64x64");
+    let with = if_whole(" --with --lod=1", "");
+    let arguments = &format!("scene:torus --points {counts} --method {methods}{with} --size 64x64");
     let run = program.run(&format!("bench {arguments} --json a.json --csv a.csv --report page"));
     assert!(run.text().contains("scene:torus") && run.text().contains("perspective-ewa"), "{}", run.text());
     let results = json(&program, "a.json");
@@ -28,7 +29,7 @@ fn an_input_is_measured_stored_and_reported_again() {
     let runs = session["runs"].as_array().unwrap();
     for count in counts.split(',') {
         let count: u64 = count.parse().unwrap();
-        for lod in [0.0, 1.0] {
+        for lod in if_whole(vec![0.0, 1.0], vec![0.0]) {
             assert!(
                 runs.iter().any(|run| run["points"] == count && run["settings"]["lod"] == lod),
                 "{count} {lod}"
