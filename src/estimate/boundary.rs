@@ -6,12 +6,23 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
+/// How far a disc at a boundary reaches, in distances to the nearer of the vertices next to it there: farther on, the boundary may turn inwards.
+const REACH: f64 = 1.1;
+
 /// Clips discs without a clip at the boundaries of the mesh of `triangles`: edges of one triangle. Coinciding points are one vertex. Returns
-/// the number of new clips.
-pub(super) fn clip(surfels: &mut Surfels, triangles: &[[u32; 3]], sites: &Sites) -> u64 {
+/// the number of new clips. Discs at the boundary also become no larger than `scale` times what reaches the vertices next to them there, if given.
+pub(super) fn clip(surfels: &mut Surfels, triangles: &[[u32; 3]], sites: &Sites, scale: Option<f32>) -> u64 {
     let boundary = Boundary::new(&surfels.positions, triangles, sites);
     if boundary.lines.is_empty() {
         return 0;
+    }
+    if let Some(scale) = scale {
+        let is_clipped = |i: usize| surfels.clips.as_ref().is_some_and(|clips| clips.get(i).is_some());
+        let most = |i: usize| (REACH * boundary.nearest(sites.of_point[i])) as f32 * scale;
+        surfels.radii = (0..surfels.len())
+            .into_par_iter()
+            .map(|i| if is_clipped(i) { surfels.radii[i] } else { surfels.radii[i].min(most(i)) })
+            .collect();
     }
     let new = |i: usize| {
         let (lines, normal) = (boundary.of(sites.of_point[i]), surfels.normals[i]);
@@ -34,7 +45,7 @@ struct Line {
     /// A point of the edge, and the direction away from the mesh, in the plane of the triangle; unit.
     point: Vec3,
     outward: DVec3,
-    /// Direction of the edge from the vertex, if this is one of its ends, not the corner of the triangle opposite to it; unit.
+    /// The edge from the vertex, if this is one of its ends, not the corner of the triangle opposite to it.
     along: Option<DVec3>,
 }
 
@@ -120,7 +131,6 @@ impl Boundary {
                 let along = (at(b) - at(a)).as_dvec3();
                 let inwards = (at(opposite) - at(a)).as_dvec3();
                 let outward = -inwards.reject_from(along).try_normalize()?;
-                let along = along.normalize();
                 let line = |vertex, along| Line { vertex, point: at(a), outward, along };
                 Some([line(a, Some(along)), line(b, Some(-along)), line(opposite, None)])
             })
@@ -135,6 +145,12 @@ impl Boundary {
             }
         }
         Self { lines, angles }
+    }
+
+    /// Distance to the nearer of the vertices next to this one on the boundary; infinite if it is not there.
+    fn nearest(&self, vertex: u32) -> f64 {
+        let edges = self.of(vertex).iter().filter_map(|line| line.along);
+        edges.map(DVec3::length).fold(f64::INFINITY, f64::min)
     }
 
     /// The boundary edges at a vertex.
@@ -173,7 +189,7 @@ mod tests {
         (mut surfels, triangles): (Surfels, Vec<[u32; 3]>),
     ) -> (u64, impl Fn(usize, usize) -> Option<Clip>) {
         let sites = Sites::new(&surfels.positions, &()).unwrap();
-        let count = clip(&mut surfels, &triangles, &sites);
+        let count = clip(&mut surfels, &triangles, &sites, None);
         (count, move |x, y| surfels.clips.as_ref()?.get(7 * y + x).copied())
     }
 
@@ -197,6 +213,21 @@ mod tests {
         assert!(corner.concave);
         let is_kept = |x: f64, y: f64| corner.keeps(DVec3::new(x, y, 0.0));
         assert!(is_kept(-0.3, 0.3) && is_kept(0.3, -0.3) && !is_kept(0.1, 0.1));
+    }
+
+    #[test]
+    fn discs_at_a_boundary_reach_the_next_vertices_there() {
+        let (mut surfels, triangles) = sheet(|_, _| true);
+        surfels.radii = vec![1.5; surfels.len()];
+        // Nearer to the next vertex of the boundary, at (1, 0).
+        surfels.positions[0] = Vec3::new(0.5, 0.0, 0.0);
+        let sites = Sites::new(&surfels.positions, &()).unwrap();
+        for (scale, corner, side) in [(None, 1.5, 1.5), (Some(1.0), 0.55, 1.1), (Some(2.0), 1.1, 1.5)] {
+            let mut surfels = surfels.clone();
+            clip(&mut surfels, &triangles, &sites, scale);
+            let radii = [0, 1, 3, 3 * 7 + 3].map(|i| surfels.radii[i]);
+            assert_eq!(radii, [corner, corner, side, 1.5], "{scale:?}");
+        }
     }
 
     #[test]
@@ -238,7 +269,7 @@ mod tests {
         };
         let triangles: Vec<_> = (0..own.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         let sites = Sites::new(&soup.positions, &()).unwrap();
-        clip(&mut soup, &triangles, &sites);
+        clip(&mut soup, &triangles, &sites, None);
         let inside = |p: &Vec3| p.x > 0.0 && p.y > 0.0 && p.x < 6.0 && p.y < 6.0;
         let clips = soup.clips.unwrap();
         for (i, position) in soup.positions.iter().enumerate() {

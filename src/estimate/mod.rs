@@ -256,8 +256,8 @@ impl Cloud {
     /// a billboard ([`Estimate::billboards`]); so is a two-sided one with a radius and without a normal, as `convert` writes it.
     ///
     /// A missing radius is just large enough that the discs of a smooth surface leave no gap, according to the triangles between the
-    /// points: faces, or the Delaunay triangulation of the neighbours in the tangent plane. Normalization weights are kept unless radii,
-    /// number or edges of the discs change; a missing one is the median.
+    /// points: faces, or the Delaunay triangulation of the neighbours in the tangent plane. At the boundary of a mesh it is at most what reaches
+    /// the next vertices there. Normalization weights are kept unless radii, number or edges of the discs change; a missing one is the median.
     ///
     /// # Errors
     /// [`Error::Usage`](crate::Error::Usage) if what is missing cannot be estimated.
@@ -296,7 +296,10 @@ impl Cloud {
                 _ => curvature::Bend::Normals,
             };
             surfels.curvatures = Some(curvature::curvatures(&surfels, &sites, bend, progress)?);
-            estimated.bounded = boundary::clip(&mut surfels, &triangles, &sites);
+            // Circles whose radii are the mesh's.
+            let is_own = estimated.radii_given == 0 && surfels.ellipses.is_none();
+            let scale = is_own.then_some(how.radius_scale);
+            estimated.bounded = boundary::clip(&mut surfels, &triangles, &sites, scale);
         }
         if let Some(angle) = how.sharp {
             estimated.clipped = creases::clip(&mut surfels, angle, how, progress)?;
