@@ -8,16 +8,16 @@ use std::path::Path;
 
 /// Most RMSE relative to that of the mesh by 16 rays a pixel, per model; beyond the figures in the guide, Accuracy, by 5 % at most.
 const MOST: [(&str, f64); 10] = [
-    ("dragon_vrip_res2", 0.45),
+    ("dragon_vrip_res2", 0.42),
     ("bun_zipper_res2", 1.0),
-    ("bumpy_sphere", 0.83),
-    ("igea", 0.32),
-    ("bun_zipper", 0.58),
-    ("screwdriver", 0.59),
+    ("bumpy_sphere", 0.82),
+    ("igea", 0.31),
+    ("bun_zipper", 0.57),
+    ("screwdriver", 0.58),
     ("laurana50k", 0.44),
-    ("feline_50k", 0.38),
+    ("feline_50k", 0.37),
     ("buddha_50k", 0.32),
-    ("chinese_dragon_10k", 1.06),
+    ("chinese_dragon_10k", 1.01),
 ];
 
 /// Scans from one place, with their triangles.
@@ -99,13 +99,13 @@ fn points_of_every_model_are_as_near_to_the_truth_as_their_mesh() {
 }
 
 /// Of the models that are as near as their mesh from the first camera, or nearly. The anchor of the bumpy sphere is the exact surface, which knows
-/// the colours between the points, so that the closest camera has it at 1.53. That of `feline_50k` has 1.49 at 512².
+/// the colours between the points, so that the closest camera has it at 1.53 at 256².
 #[test]
 #[ignore = "takes long: tools/test --all"]
 fn points_are_as_near_from_other_cameras_at_other_sizes() {
     let test = "points_are_as_near_from_other_cameras_at_other_sizes";
-    check(test, &["dragon_vrip_res2", "bun_zipper_res2", "igea", "bun_zipper", "screwdriver"], Some(1.35));
-    check(test, &["feline_50k"], Some(1.57));
+    let models = ["dragon_vrip_res2", "bun_zipper_res2", "igea", "bun_zipper", "screwdriver", "feline_50k"];
+    check(test, &models, Some(1.35));
 }
 
 #[test]
