@@ -6,11 +6,12 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// How far a disc at a boundary reaches, in distances to the nearer of the vertices next to it there: farther on, the boundary may turn inwards.
+/// Largest radius of a disc at a boundary, in distances to the nearer of the boundary vertices next to it: farther away, the boundary may turn
+/// inwards.
 const REACH: f64 = 1.1;
 
 /// Clips discs without a clip at the boundaries of the mesh of `triangles`: edges of one triangle. Coinciding points are one vertex. Returns
-/// the number of new clips. Discs at the boundary also become no larger than `scale` times what reaches the vertices next to them there, if given.
+/// the number of new clips. If `scale` is given, the radii of discs at the boundary are limited to `scale` times [`REACH`] as well.
 pub(super) fn clip(surfels: &mut Surfels, triangles: &[[u32; 3]], sites: &Sites, scale: Option<f32>) -> u64 {
     let boundary = Boundary::new(&surfels.positions, triangles, sites);
     if boundary.lines.is_empty() {
@@ -18,10 +19,11 @@ pub(super) fn clip(surfels: &mut Surfels, triangles: &[[u32; 3]], sites: &Sites,
     }
     if let Some(scale) = scale {
         let is_clipped = |i: usize| surfels.clips.as_ref().is_some_and(|clips| clips.get(i).is_some());
+        let keeps = |i: usize| is_clipped(i) || surfels.is_billboard(i);
         let most = |i: usize| (REACH * boundary.nearest(sites.of_point[i])) as f32 * scale;
         surfels.radii = (0..surfels.len())
             .into_par_iter()
-            .map(|i| if is_clipped(i) { surfels.radii[i] } else { surfels.radii[i].min(most(i)) })
+            .map(|i| if keeps(i) { surfels.radii[i] } else { surfels.radii[i].min(most(i)) })
             .collect();
     }
     let new = |i: usize| {
@@ -221,12 +223,14 @@ mod tests {
         surfels.radii = vec![1.5; surfels.len()];
         // Nearer to the next vertex of the boundary, at (1, 0).
         surfels.positions[0] = Vec3::new(0.5, 0.0, 0.0);
+        // A billboard at the boundary keeps its radius.
+        surfels.normals[5] = Vec3::ZERO;
         let sites = Sites::new(&surfels.positions, &()).unwrap();
         for (scale, corner, side) in [(None, 1.5, 1.5), (Some(1.0), 0.55, 1.1), (Some(2.0), 1.1, 1.5)] {
             let mut surfels = surfels.clone();
             clip(&mut surfels, &triangles, &sites, scale);
-            let radii = [0, 1, 3, 3 * 7 + 3].map(|i| surfels.radii[i]);
-            assert_eq!(radii, [corner, corner, side, 1.5], "{scale:?}");
+            let radii = [0, 1, 3, 5, 3 * 7 + 3].map(|i| surfels.radii[i]);
+            assert_eq!(radii, [corner, corner, side, 1.5, 1.5], "{scale:?}");
         }
     }
 
