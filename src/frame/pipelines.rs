@@ -85,15 +85,18 @@ impl Request {
 /// Stack of a thread that compiles, bytes: as much as drivers have on main threads.
 const STACK: usize = 8 << 20;
 
-/// The results of `make` for 0, 1, … below `count`, by as many threads as the CPU runs at once. They are no threads of a pool, which would do
-/// other work of the host while they wait for each other.
+/// Most threads that compile at once: compilers of drivers take much memory.
+const MOST_THREADS: usize = 8;
+
+/// The results of `make` for 0, 1, … below `count`, by as many threads as the CPU runs at once, at most [`MOST_THREADS`]. They are no threads of
+/// a pool, which would do other work of the host while they wait for each other.
 fn in_parallel<T: Send>(count: usize, make: &(dyn Fn(usize) -> T + Sync)) -> Vec<T> {
     let next = AtomicUsize::new(0);
     let take = || {
         let numbers = std::iter::repeat_with(|| next.fetch_add(1, Ordering::Relaxed));
         numbers.take_while(|i| *i < count).map(|i| (i, make(i))).collect::<Vec<_>>()
     };
-    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(count);
+    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(MOST_THREADS).min(count);
     let mut made = std::thread::scope(|scope| {
         let start = |_| std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, take).ok();
         let others: Vec<_> = (1..threads).filter_map(start).collect();
