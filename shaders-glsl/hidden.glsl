@@ -110,7 +110,9 @@ void main() {
     uint cluster = group.first + lane, first = CLUSTER_SIZE * cluster;
     Cluster bounds = clusters[(chunk.first_id + first) / CLUSTER_SIZE];
     float key = nearest_key_of(bounds);
-    Tiles tiles = tiles_of(bounds);
+    Tiles tiles = Tiles(uvec2(0), uvec2(0));
+    // Near the eye, pixels are infinite or not numbers, which have no tile.
+    if (key < NEVER_HIDDEN) tiles = tiles_of(bounds);
     bool hidden = is_hidden(key, tiles);
     hidden_clusters[hidden_index(group.instance, cluster)] = uint(hidden);
     if (box.w != CULLED_CLUSTER) return;

@@ -18,8 +18,9 @@ mat2x3 field_of(vec3 normal, vec4 stored) {
     return tangents(normal) * mat2(stored.xy, stored.zw);
 }
 
-// Normals of a field on a tile, not of unit length: at the tile's first pixel, and their change per px along x and y. u and v are the affine map
-// to kernel coordinates, σ. Far from a thin splat they are as large as they can be without overflow in sums.
+// Normals of a field on a tile, not of unit length: at the tile's first pixel, and their change per px along x and y. u and v are the rows of the
+// affine map from pixels of the tile to kernel coordinates, σ. Far from a thin splat these are huge: they are clamped, so that no sum of normals
+// overflows.
 mat3 normals_on_tile(vec3 normal, mat2x3 field, vec3 u, vec3 v) {
     mat3 normals = field * transpose(mat2x3(u, v));
     normals[0] += normal;

@@ -28,7 +28,7 @@ mat2x3 normal_field(uint i, Splat splat) {
     mat2 square = square_of(splat, axes[0], aspect, normal, to_eye);
     vec2 variance = variance_of(splat), share = variance / attribute_variance(variance);
     vec2 kept = max(share - FLAT_VARIANCE * (1.0 - share), 0.0);
-    // Where the root is of less than ½, nothing is kept.
+    // Shares of less than ⅞ keep nothing: the maximum only avoids 0 / 0.
     vec2 to_disc = kept / (sqrt(max(share, 0.5)) * mix(vec2(FIELD_FILTER), vec2(1.0), share));
     float largest = abs(largest_curvature(curvature)) * radius;
     float sigma = min(1.0, MOST_TURN / largest) * radius / frame.cutoff;

@@ -338,7 +338,7 @@ fn to_axes(axis: DVec2, sigma: DVec2) -> DMat2 {
 /// See [`Ellipse::to_disc`]: (V − 7 H)⁺ √(V' / V) / (V + 7 H), of `share`, which is V / V', with H = V' − V.
 fn to_disc(share: f64) -> f64 {
     let kept = (share - FLAT_VARIANCE * (1.0 - share)).max(0.0);
-    // Where the root is of less than ½, nothing is kept.
+    // Shares of less than ⅞ keep nothing: the maximum only avoids 0 / 0.
     kept / (share.max(0.5).sqrt() * (share + FIELD_FILTER * (1.0 - share)))
 }
 
