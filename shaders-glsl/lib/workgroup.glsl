@@ -1,9 +1,10 @@
 // Workgroups of tile passes: LANES invocations that own a tile and exchange values. They are one subgroup (SUBGROUPS), or use shared memory
 // and barriers.
 //
-// SUBGROUPS: invocations that have diverged at a branch in uniform control flow are assumed to reconverge after it, so that all of them take part
-// in the next shuffle. Vulkan guarantees this with VK_KHR_shader_subgroup_uniform_control_flow only, which is not required: the drivers that
-// lack it reconverge at the end of a branch, too. All branches and loops around shuffles are uniform in the workgroup.
+// SUBGROUPS: invocations that have diverged at a branch in uniform control flow reconverge after it, so that all of them take part in the next
+// shuffle. Vulkan guarantees this to pipelines that require it (VK_KHR_shader_subgroup_uniform_control_flow): `ComputePipeline::new` does where
+// the device has the extension. The others are assumed to reconverge at the end of a branch, too. All branches and loops around shuffles are
+// uniform in the workgroup.
 
 layout(local_size_x_id = 44) in;
 

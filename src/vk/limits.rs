@@ -23,6 +23,8 @@ pub struct DeviceLimits {
     pub independent_blend: Option<bool>,
     /// `false` hides the control of subgroup sizes.
     pub subgroup_size_control: Option<bool>,
+    /// `false` hides the guarantee that subgroups reconverge.
+    pub subgroup_uniform_control_flow: Option<bool>,
     /// `false` hides dynamic rendering in hosts.
     pub dynamic_rendering: Option<bool>,
     /// `false` hides timestamps.
@@ -59,6 +61,7 @@ impl DeviceLimits {
             fragment_writes: self.fragment_writes != Some(false),
             independent_blend: self.independent_blend != Some(false),
             subgroup_size_control: self.subgroup_size_control != Some(false),
+            subgroup_uniform_control_flow: self.subgroup_uniform_control_flow != Some(false),
         };
         abilities.and(left)
     }
@@ -85,6 +88,8 @@ pub struct Capabilities {
     pub subgroup_size: u32,
     /// Pipelines can require that subgroup size, and full subgroups.
     pub subgroup_size_control: bool,
+    /// Shaders can require that subgroups reconverge after branches (VK_KHR_shader_subgroup_uniform_control_flow).
+    pub subgroup_uniform_control_flow: bool,
     /// Invocations of a workgroup that passes values on by shared memory.
     pub shared_lanes: u32,
     /// Most invocations that sort the surfels of a chunk in arbitrary order; each takes a KiB of counters.
@@ -191,6 +196,7 @@ impl Capabilities {
             limited_loops: mask.limited_loops.unwrap_or(is_cpu),
             subgroup_size,
             subgroup_size_control,
+            subgroup_uniform_control_flow: enabled.subgroup_uniform_control_flow,
             shared_lanes: mask
                 .shared_lanes
                 .map_or(shared_lanes, |lanes| lanes.next_power_of_two().clamp(8, 64)),

@@ -40,7 +40,7 @@ pub type Sets<'a> = [&'a SetLayout];
 
 impl ComputePipeline {
     /// Creates a pipeline of `module` with these set layouts. If a workgroup `is_subgroup`, of
-    /// [`subgroup_size`](super::Capabilities::subgroup_size), the pipeline requires that where it can.
+    /// [`subgroup_size`](super::Capabilities::subgroup_size), the pipeline requires that where it can, and that subgroups reconverge.
     pub fn new(
         device: &Arc<Device>,
         sets: &Sets<'_>,
@@ -48,9 +48,12 @@ impl ComputePipeline {
         constants: &Constants,
         is_subgroup: bool,
     ) -> Result<Self> {
-        let code = Code::from(module).bound(sets)?;
-        let push = code.push();
         let capabilities = device.capabilities();
+        let mut code = Code::from(module).bound(sets)?;
+        if is_subgroup && capabilities.subgroup_uniform_control_flow {
+            code = code.with_uniform_control_flow();
+        }
+        let push = code.push();
         let required =
             (is_subgroup && capabilities.subgroup_size_control).then_some(capabilities.subgroup_size);
         let stage = code.specialized(constants).with_subgroup_size(required);

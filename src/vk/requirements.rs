@@ -14,6 +14,8 @@ pub struct Abilities {
     pub independent_blend: bool,
     /// Pipelines can require a subgroup size, and full subgroups.
     pub subgroup_size_control: bool,
+    /// Shaders can require that subgroups reconverge after branches.
+    pub subgroup_uniform_control_flow: bool,
 }
 
 /// One of the [`Abilities`]: its Vulkan names and its benefit.
@@ -37,7 +39,7 @@ pub const QUEUE: vk::QueueFlags =
     vk::QueueFlags::from_raw(vk::QueueFlags::GRAPHICS.as_raw() | vk::QueueFlags::COMPUTE.as_raw());
 
 /// All optional features.
-pub const ABILITIES: [Ability; 4] = [
+pub const ABILITIES: [Ability; 5] = [
     Ability {
         extension: Some(ash::khr::shader_atomic_int64::NAME),
         features: "shaderInt64, shaderBufferInt64Atomics",
@@ -61,6 +63,12 @@ pub const ABILITIES: [Ability; 4] = [
         features: "subgroupSizeControl, computeFullSubgroups",
         buys: "tiles by subgroups where their size varies",
         of: |abilities| abilities.subgroup_size_control,
+    },
+    Ability {
+        extension: Some(ash::khr::shader_subgroup_uniform_control_flow::NAME),
+        features: "shaderSubgroupUniformControlFlow",
+        buys: "a guarantee that subgroups reconverge after branches",
+        of: |abilities| abilities.subgroup_uniform_control_flow,
     },
 ];
 
@@ -112,6 +120,10 @@ impl Abilities {
         if sizes {
             query = query.push_next(&mut features.subgroups);
         }
+        let flow = has(ash::khr::shader_subgroup_uniform_control_flow::NAME);
+        if flow {
+            query = query.push_next(&mut features.flow);
+        }
         // SAFETY: by the caller; each struct is of an extension that the device has.
         unsafe { instance.get_physical_device_features2(physical, &mut query) };
         let core = query.features;
@@ -124,6 +136,8 @@ impl Abilities {
             subgroup_size_control: sizes
                 && features.subgroups.subgroup_size_control == vk::TRUE
                 && features.subgroups.compute_full_subgroups == vk::TRUE,
+            subgroup_uniform_control_flow: flow
+                && features.flow.shader_subgroup_uniform_control_flow == vk::TRUE,
         }
     }
 
@@ -144,6 +158,8 @@ impl Abilities {
             subgroups: vk::PhysicalDeviceSubgroupSizeControlFeatures::default()
                 .subgroup_size_control(self.subgroup_size_control)
                 .compute_full_subgroups(self.subgroup_size_control),
+            flow: vk::PhysicalDeviceShaderSubgroupUniformControlFlowFeaturesKHR::default()
+                .shader_subgroup_uniform_control_flow(self.subgroup_uniform_control_flow),
         }
     }
 
@@ -154,6 +170,8 @@ impl Abilities {
             fragment_writes: self.fragment_writes && other.fragment_writes,
             independent_blend: self.independent_blend && other.independent_blend,
             subgroup_size_control: self.subgroup_size_control && other.subgroup_size_control,
+            subgroup_uniform_control_flow: self.subgroup_uniform_control_flow
+                && other.subgroup_uniform_control_flow,
         }
     }
 }
@@ -165,6 +183,7 @@ pub struct Features {
     pub core: vk::PhysicalDeviceFeatures,
     integers: vk::PhysicalDeviceShaderAtomicInt64Features<'static>,
     subgroups: vk::PhysicalDeviceSubgroupSizeControlFeatures<'static>,
+    flow: vk::PhysicalDeviceShaderSubgroupUniformControlFlowFeaturesKHR<'static>,
 }
 
 // SAFETY: the chained pointers are read only while the borrow of `chain` lasts, and `chain` renews them.
@@ -179,11 +198,15 @@ impl Features {
     pub fn chain<'a>(&'a mut self, mut info: vk::DeviceCreateInfo<'a>) -> vk::DeviceCreateInfo<'a> {
         self.integers.p_next = std::ptr::null_mut();
         self.subgroups.p_next = std::ptr::null_mut();
+        self.flow.p_next = std::ptr::null_mut();
         if self.integers.shader_buffer_int64_atomics == vk::TRUE {
             info = info.push_next(&mut self.integers);
         }
         if self.subgroups.subgroup_size_control == vk::TRUE {
             info = info.push_next(&mut self.subgroups);
+        }
+        if self.flow.shader_subgroup_uniform_control_flow == vk::TRUE {
+            info = info.push_next(&mut self.flow);
         }
         info
     }

@@ -7,6 +7,7 @@ use ash::vk;
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
+use std::ops::Range;
 
 /// Values of specialization constants. A module takes those that it reads.
 #[derive(Clone, Debug, Default)]
@@ -54,7 +55,7 @@ impl Hash for Name {
     fn hash<H: Hasher>(&self, _: &mut H) {}
 }
 
-/// The SPIR-V of a stage's module, or a copy with changed decorations.
+/// The SPIR-V of a stage's module, or a changed copy.
 #[derive(Clone)]
 pub struct Code {
     module: &'static Module,
@@ -75,17 +76,34 @@ mod decoration {
     pub const INPUT_ATTACHMENT_INDEX: u32 = 43;
 }
 
+/// SPIR-V opcodes.
+mod opcode {
+    pub const EXTENSION: u32 = 10;
+    pub const ENTRY_POINT: u32 = 15;
+    pub const EXECUTION_MODE: u32 = 16;
+    pub const CAPABILITY: u32 = 17;
+    pub const DECORATE: u32 = 71;
+}
+
+/// Opcode and words of every instruction.
+fn instructions(words: &[u32]) -> Vec<(u32, Range<usize>)> {
+    const HEADER: usize = 5;
+    let mut start = HEADER;
+    let next = || {
+        let word = *words.get(start)?;
+        let first = start;
+        start = words.len().min(start + (word >> 16).max(1) as usize);
+        Some((word & 0xffff, first..start))
+    };
+    std::iter::from_fn(next).collect()
+}
+
 /// Calls `each` with target, decoration and operand of every decoration that has an operand.
 fn decorations(words: &mut [u32], mut each: impl FnMut(u32, u32, &mut u32)) {
-    const HEADER: usize = 5;
-    const OP_DECORATE: u32 = 71;
-    let mut i = HEADER;
-    while let Some(&word) = words.get(i) {
-        let length = (word >> 16).max(1) as usize;
-        if let (OP_DECORATE, Some([id, which, number])) = (word & 0xffff, words.get_mut(i + 1..i + length)) {
+    for (found, range) in instructions(words) {
+        if let (opcode::DECORATE, [_, id, which, number]) = (found, &mut words[range]) {
             each(*id, *which, number);
         }
-        i += length;
     }
 }
 
@@ -97,6 +115,29 @@ impl Code {
                 *location = locations[*location as usize % 3];
             }
         });
+        self
+    }
+
+    /// Requires that the invocations of a subgroup reconverge after branches in uniform control flow (SPV_KHR_subgroup_uniform_control_flow).
+    pub(super) fn with_uniform_control_flow(mut self) -> Self {
+        const NAME: [u8; 40] = *b"SPV_KHR_subgroup_uniform_control_flow\0\0\0";
+        const SUBGROUP_UNIFORM_CONTROL_FLOW: u32 = 4421;
+        let last = |opcode| instructions(&self.words).into_iter().rfind(|(found, _)| *found == opcode);
+        let (Some((_, capability)), Some((_, entry))) = (last(opcode::CAPABILITY), last(opcode::ENTRY_POINT))
+        else {
+            return self;
+        };
+        let mode = [
+            instruction(opcode::EXECUTION_MODE, 2),
+            self.words[entry.start + 2],
+            SUBGROUP_UNIFORM_CONTROL_FLOW,
+        ];
+        let name = NAME.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes));
+        let extension = std::iter::once(instruction(opcode::EXTENSION, NAME.len() / 4)).chain(name);
+        let words = self.words.to_mut();
+        // The later one first, as it moves what follows.
+        words.splice(entry.end..entry.end, mode);
+        words.splice(capability.end..capability.end, extension);
         self
     }
 
@@ -134,6 +175,11 @@ impl Code {
     pub(super) fn push(&self) -> u32 {
         self.module.push
     }
+}
+
+/// First word of an instruction with so many operands.
+fn instruction(opcode: u32, operands: usize) -> u32 {
+    (operands as u32 + 1) << 16 | opcode
 }
 
 /// Moves the declaration of one resource to the binding of another.
@@ -236,7 +282,8 @@ struct ShaderModule<'a> {
 impl<'a> ShaderModule<'a> {
     fn new(device: &'a Device, stage: &ShaderStage) -> Result<Self> {
         let info = vk::ShaderModuleCreateInfo::default().code(&stage.words);
-        // SAFETY: shaderc compiled the SPIR-V; at most locations and bindings are changed. `drop` destroys the module.
+        // SAFETY: shaderc compiled the SPIR-V; at most locations, bindings and an execution mode that the device has are changed. `drop` destroys
+        // the module.
         let raw = unsafe { device.raw.create_shader_module(&info, None) }
             .map_err(Error::vulkan("vkCreateShaderModule"))?;
         Ok(Self { raw, device })
@@ -247,5 +294,33 @@ impl Drop for ShaderModule<'_> {
     fn drop(&mut self) {
         // SAFETY: a module may be destroyed once its pipelines are created.
         unsafe { self.device.raw.destroy_shader_module(self.raw, None) };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vk::shaders::SURFACE_SUBGROUPS_COMPUTE;
+
+    #[test]
+    fn modules_can_require_uniform_control_flow() {
+        let module = &SURFACE_SUBGROUPS_COMPUTE;
+        let words = Code::from(module).with_uniform_control_flow().words;
+        let all = instructions(&words);
+        let place = |wanted| all.iter().position(|(found, _)| *found == wanted).unwrap();
+        let last = |wanted| all.iter().rposition(|(found, _)| *found == wanted).unwrap();
+        let (extension, mode) = (place(opcode::EXTENSION), place(opcode::EXECUTION_MODE));
+        assert_eq!(extension, last(opcode::CAPABILITY) + 1);
+        assert_eq!(mode, place(opcode::ENTRY_POINT) + 1);
+        let bytes: Vec<u8> =
+            words[all[extension].1.clone()].iter().flat_map(|word| word.to_le_bytes()).collect();
+        assert_eq!(&bytes[4..], b"SPV_KHR_subgroup_uniform_control_flow\0\0\0");
+        let entry = words[all[mode - 1].1.start + 2];
+        assert_eq!(words[all[mode].1.clone()][1..], [entry, 4421]);
+        // Nothing else has changed.
+        let mut rest = words.to_vec();
+        rest.drain(all[mode].1.clone());
+        rest.drain(all[extension].1.clone());
+        assert_eq!(rest, module.words());
     }
 }

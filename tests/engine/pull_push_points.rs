@@ -24,6 +24,7 @@ const NO_ATOMICS: DeviceLimits = DeviceLimits {
     fragment_writes: None,
     independent_blend: None,
     subgroup_size_control: None,
+    subgroup_uniform_control_flow: None,
     shared_lanes: None,
     dynamic_rendering: None,
     timestamps: None,

@@ -96,6 +96,7 @@ impl Gpu {
             int64_atomics: features.contains(INT64_ATOMICS),
             fragment_writes: flags.contains(DownlevelFlags::FRAGMENT_WRITABLE_STORAGE),
             subgroup_size_control: false,
+            subgroup_uniform_control_flow: false,
             independent_blend: flags.contains(DownlevelFlags::INDEPENDENT_BLEND),
         }
     }
