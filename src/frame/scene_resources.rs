@@ -13,7 +13,7 @@ use super::surfel_order::SurfelOrder;
 use super::uniforms::{self, VIEW};
 use super::visible_clusters::VisibleClusters;
 use crate::error::Result;
-use crate::scene::{CLUSTER, Elements, Scene};
+use crate::scene::{CLUSTER, Elements, LARGEST_STRIDE, Scene};
 use crate::vk::shaders::layout::{Counts, Group, Splat};
 use crate::vk::shaders::{self, resource};
 use crate::vk::{Binding, Buffer, Commands, DescriptorSet, Device, Encoder, Recorder, Update};
@@ -427,7 +427,7 @@ impl SceneResources {
 pub fn batches_of(device: &Device, scene: &Scene, instances: u64) -> Batches {
     let triangles = scene.primitives.as_ref().and_then(|kinds| kinds.triangles.as_ref());
     let listed = triangles.map_or(0, |triangles| u64::from(triangles.count));
-    let bytes = (slots(scene.capacity()) * SPLAT).max(4 * listed);
+    let bytes = (slots(scene.capacity()) * LARGEST_STRIDE).max(4 * listed);
     let range = device.capabilities().max_storage_buffer_range.saturating_sub(LIST_HEADER);
     Batches::new(instances, scene.chunks().len(), bytes, range)
 }

@@ -4,9 +4,9 @@ use super::resource::Resource;
 use super::scene_resources::copy_to_host;
 use super::splat_buffers::{ALIGNMENT, Batches, SPLAT};
 use super::tile_workgroup::TileWorkgroup;
-use super::variant::Variant;
+use super::variant::{MOST_ATTRIBUTE_ROWS, Variant};
 use crate::error::Result;
-use crate::scene::{CLUSTER, Scene};
+use crate::scene::{CLUSTER, LARGEST_STRIDE, Scene};
 use crate::vk::shaders::layout::{Hierarchy, Level, ScreenClip};
 use crate::vk::shaders::{self, resource};
 use crate::vk::{Binding, Buffer, Commands, Device, TexelView};
@@ -28,6 +28,7 @@ pub const SLICE: u64 = FAN_OUT.pow(SLICES);
 pub const BOX: u64 = 16;
 /// Bytes of a row of attributes.
 pub const ATTRIBUTE_ROW: u64 = 16;
+const _: () = assert!(SPLAT <= LARGEST_STRIDE && ATTRIBUTE_ROW * MOST_ATTRIBUTE_ROWS == LARGEST_STRIDE);
 /// Largest ratio of a list's capacity to the required one before it is reallocated: coarse and fine scenes alternate.
 const MOST_EXCESS: u64 = 32;
 /// Splat alignment of ranges of the list, so that clusters are nodes and ranges of all its buffers are aligned.
@@ -328,14 +329,15 @@ pub fn workgroup_of(device: &Device, extent: ListExtent) -> Option<TileWorkgroup
     let capabilities = device.capabilities();
     let range = capabilities.max_storage_buffer_range;
     let clips = size_of::<ScreenClip>() as u64 * extent.clips;
-    // Splats have the most texels of a list's buffers.
-    let texels = SPLAT / TexelView::TEXEL * extent.splats <= capabilities.max_texels;
+    // Lists keep the most rows of attributes that a frame has needed.
+    let largest = LARGEST_STRIDE * extent.splats;
+    let texels = largest / TexelView::TEXEL <= capabilities.max_texels;
     let nodes = BOX * extent.splats / (FAN_OUT - 1);
     let workgroup = TileWorkgroup::of(capabilities);
     if workgroup.subgroups && texels && nodes.max(clips) <= range {
         return Some(workgroup);
     }
-    ((SPLAT * extent.splats).max(clips) <= range).then(|| TileWorkgroup::of_shared_memory(capabilities))
+    (largest.max(clips) <= range).then(|| TileWorkgroup::of_shared_memory(capabilities))
 }
 
 /// Instance capacity for so many instances, so that adding one does not reallocate each time, unless it begins a batch: at most an eighth more,

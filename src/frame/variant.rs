@@ -9,6 +9,14 @@ use crate::settings::{Alpha, Cull, Outputs, Precision, Rasterizer, Settings, Sha
 use crate::vk::Constants;
 use crate::vk::shaders::{Resource, constant, resource};
 
+/// Largest number of [`Variant::attribute_rows`].
+pub const MOST_ATTRIBUTE_ROWS: u64 = attribute_rows(true, true, true, true);
+
+/// Rows of a splat's attributes: the first sums, the second ones, the normal field, and the weights at corners.
+const fn attribute_rows(sums0: bool, sums1: bool, normal_field: bool, corners: bool) -> u64 {
+    sums0 as u64 + sums1 as u64 + normal_field as u64 + 2 * corners as u64
+}
+
 /// Key of targets and of pipelines over pixels: properties of the scenes and the settings that select code and formats, without values that
 /// change per frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -240,10 +248,7 @@ impl Variant {
 
     /// Attribute rows of a splat, on the tile path: `lib/attributes.glsl`.
     pub fn attribute_rows(&self) -> u64 {
-        u64::from(self.wide_sums0() || self.weights)
-            + u64::from(self.wide_sums1())
-            + u64::from(self.normal_fields)
-            + 2 * u64::from(self.corners)
+        attribute_rows(self.wide_sums0() || self.weights, self.wide_sums1(), self.normal_fields, self.corners)
     }
 
     /// Whether pull–push rasterizes surfels as points.

@@ -27,6 +27,7 @@ use crate::geometry::{
 };
 use crate::vk::shaders::{Resource, resource};
 use crate::vk::{Binding, Buffer, Device, Uploads};
+pub(crate) use chunks::LARGEST_STRIDE;
 use chunks::{chunks, step};
 pub(crate) use clips::ClipChunk;
 use clips::ClipStream;

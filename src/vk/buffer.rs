@@ -150,9 +150,15 @@ impl TexelView {
     /// Bytes of a texel.
     pub const TEXEL: u64 = 16;
 
-    /// All of a buffer of [`Buffer::texels`], which must outlive it and have no more texels than [`super::Capabilities::max_texels`].
+    /// All of a buffer of [`Buffer::texels`], which must outlive it. Fails if it has more texels than [`super::Capabilities::max_texels`].
     pub fn new(buffer: &Buffer) -> Result<Self> {
         let device = &buffer.device;
+        let (texels, most) = (buffer.size / Self::TEXEL, device.capabilities().max_texels);
+        if texels > most {
+            return Err(Error::Usage(format!(
+                "a texel buffer of {texels} texels is larger than the {most} of the device: render fewer surfels at once"
+            )));
+        }
         let info = vk::BufferViewCreateInfo::default()
             .buffer(buffer.raw)
             .format(vk::Format::R32G32B32A32_UINT)

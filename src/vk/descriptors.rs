@@ -3,7 +3,7 @@
 use super::set_layout::SetLayout;
 use super::shaders::Resource;
 use super::{Buffer, Device, Image, TexelView, image::is_depth};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use ash::vk;
 use std::sync::Arc;
 
@@ -58,8 +58,20 @@ pub struct DescriptorSet {
 }
 
 impl DescriptorSet {
-    /// Creates a set of these bindings, all of one set. The bound resources must outlive the set's last use.
+    /// Creates a set of these bindings, all of one set. The bound resources must outlive the set's last use. Fails if a range of a storage buffer
+    /// is larger than the device allows.
     pub fn new(device: &Arc<Device>, bindings: &[(&Resource, Binding<'_>)]) -> Result<Self> {
+        let most = device.capabilities().max_storage_buffer_range;
+        for (resource, binding) in bindings {
+            if let Binding::Storage(.., size) = *binding
+                && size > most
+            {
+                return Err(Error::Usage(format!(
+                    "{} has {size} bytes, and a storage buffer at most {most}: render fewer surfels or pixels at once",
+                    resource.name
+                )));
+            }
+        }
         let layout = SetLayout::of(device, bindings.iter().map(|(resource, _)| *resource))?;
         let kinds: Vec<_> = layout.bindings.iter().map(|(_, kind, _)| *kind).collect();
         let (raw, pool) = device.descriptor_pools.allocate(&device.raw, layout.raw, &kinds)?;

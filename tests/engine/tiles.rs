@@ -7,10 +7,10 @@ use crate::support::settings::splats_alone;
 use glam::{DMat2, DMat4, DVec3, Vec3};
 use std::sync::Arc;
 use surfel::frame::Splat;
-use surfel::geometry::{Camera, Colours, Curvature, Surfels};
+use surfel::geometry::{Camera, Colours, Curvature, Surfels, Weights};
 use surfel::picture::Picture;
 use surfel::settings::methods::Method;
-use surfel::settings::splatting::{Splatting, Visibility};
+use surfel::settings::splatting::{Normalization, Splatting, Visibility};
 use surfel::settings::{Alpha, Cull, Edges};
 use surfel::verify::scenes::bumpy_sphere;
 use surfel::vk::DeviceLimits;
@@ -34,6 +34,26 @@ fn a_picture_may_be_larger_than_a_storage_buffer() {
     let scene = Scene::upload(&device, &surfels).unwrap();
     let refused = Renderer::new(&device, options).unwrap().render(&scene, &camera(SIZE), &splats_alone());
     assert!(matches!(refused.err(), Some(Error::Usage(text)) if text.contains("524288 bytes")));
+    assert_silent(&device);
+}
+
+#[test]
+fn chunks_fit_the_attributes_of_splats() {
+    // The splats of one chunk fit, 64 bytes each; their attributes, of 80 bytes each, need two.
+    let limits = DeviceLimits { max_storage_buffer_range: Some(1 << 18), ..Default::default() };
+    let Some(device) = device(limits) else { return };
+    let unlimited = self::device(DeviceLimits::default()).unwrap();
+    let mut surfels = sphere(4_096);
+    surfels.curvatures = Some(vec![Curvature::of_shape_operator(DMat2::IDENTITY); 4_096]);
+    let corners = |i: usize| Some([0.5, 1.0, 0.25, 2.0].map(|weight| weight + 0.01 * (i % 31) as f32));
+    surfels.weights = Some(Weights::collect((0..4_096).map(|i| (1.0, corners(i)))));
+    let splatting = Splatting { normalization: Normalization::Surfel, ..Splatting::default() };
+    let settings = Settings { splatting, ..splats_alone() };
+    assert_eq!(Scene::upload(&device, &surfels).unwrap().chunks().len(), 2);
+    let options = RenderOptions { size: [64, 48], ..all_outputs(Rasterizer::Compute) };
+    let [picture, expected] = [&device, &unlimited]
+        .map(|device| render(device, &surfels, &camera(options.size), &settings, options));
+    assert!(picture.colour.iter().any(|colour| colour[3] > 0.0) && picture == expected);
     assert_silent(&device);
 }
 
@@ -137,7 +157,7 @@ fn surfels_in_arbitrary_order_render_the_same_picture() {
         },
         ..sorted.clone()
     };
-    // One chunk, and chunks of 8,192 surfels that are sorted one by one; few invocations that sort, and more.
+    // One chunk, and chunks of 6,400 surfels that are sorted one by one; few invocations that sort, and more.
     let range = Some(1 << 19);
     let parted =
         DeviceLimits { max_storage_buffer_range: range, max_sort_runs: Some(1 << 14), ..Default::default() };
