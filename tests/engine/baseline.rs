@@ -227,10 +227,12 @@ fn shows(picture: &Picture, i: usize, there: &[Point], surfels: &Surfels) -> boo
 
 #[test]
 fn points_are_those_that_a_search_finds() {
-    for mut case in cases() {
+    for (number, mut case) in cases().into_iter().enumerate() {
         paint_linear(&mut case.surfels, &mut Random(1));
         let settings = Settings { shading: Shading::Colour, background: None, ..case.settings.clone() };
-        for (i, camera) in case.cameras.iter().enumerate() {
+        // The short run has one camera of each case, in turns.
+        let some = |i: usize| if_whole(true, i == number % 3);
+        for (i, camera) in case.cameras.iter().enumerate().filter(|(i, _)| some(*i)) {
             let pixels = points(&case.surfels, camera, case.size, &settings);
             let wrong = |camera: &Camera| {
                 let picture = draw(Kind::Pixels, &case.surfels, camera, case.size, &settings);

@@ -1,6 +1,7 @@
 //! Billboards: discs that face the eye of every frame.
 
 use crate::support::gpu::{Renderers, assert_silent, device};
+use crate::support::if_whole;
 use crate::support::placing::{moved, turned};
 use crate::support::sampling::{Random, paint_linear};
 use crate::support::settings::splats_alone;
@@ -67,13 +68,14 @@ fn a_billboard_is_a_disc_of_the_same_area_from_every_side() {
             |rasterizer| renderers.render_instances(&scene, camera, &coverage(), options(rasterizer)).0;
         BOTH.map(|rasterizer| area(&picture_of(rasterizer)))
     };
-    for side in SIDES {
+    let solid = solid_part();
+    for side in SIDES.into_iter().step_by(if_whole(1, 2)) {
         // 64 px: the radius by the focal length at its distance, or by the height of the picture. The coverage of a disc ends where it is solid.
         for camera in [perspective(side), parallel(side)] {
             let areas = both(&camera);
             assert!((areas[0] - areas[1]).abs() < 1.0, "{side}: {areas:?}");
             let radius = (areas[0] / PI).sqrt();
-            assert!((radius / 64.0 - solid_part()).abs() < 0.01, "{side}: {radius} px");
+            assert!((radius / 64.0 - solid).abs() < 0.01, "{side}: {radius} px");
         }
     }
     assert_silent(&device);

@@ -42,14 +42,15 @@ fn a_frame_draws_the_tiles_of_its_splats_once() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let scene = Arc::new(Scene::upload(&device, &sphere(5_000)).unwrap());
     let methods = ["perspective-ewa", "object-ewa", "sprites-unfiltered"];
-    // The last picture has more tiles than a row of a dispatch.
+    // The last picture has more tiles than a row of a dispatch; in the short run the sphere is in one place there.
     for (size, methods) in
         [([256, 192], &methods[..]), ([203, 131], &methods[..1]), ([2056, 1040], &methods[..1])]
     {
         for (name, transform) in methods.iter().flat_map(|name| {
             let places =
                 [(1.0, [0.0; 3]), (0.05, [-1.1, 0.7, 0.0]), (1.0, [3.0, -1.5, 0.0]), (1.0, [0.0, 0.0, 20.0])];
-            places.map(|(scale, at)| (*name, placed(scale, at)))
+            let some = places.into_iter().take(if_whole(4, if size[0] > 1000 { 1 } else { 4 }));
+            some.map(move |(scale, at)| (*name, placed(scale, at)))
         }) {
             let mut renderer = Renderer::new(&device, options(size)).unwrap();
             let settings = Method::named(name).unwrap().settings();

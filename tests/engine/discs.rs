@@ -78,6 +78,7 @@ fn two_sided_surfels_have_no_back() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn shapes_and_sides_reach_every_window() {
     let limits = DeviceLimits { max_storage_buffer_range: Some(1 << 20), ..Default::default() };
     let (Some(device), Some(narrow)) = (device(DeviceLimits::default()), device(limits)) else { return };

@@ -86,6 +86,7 @@ fn splats_agree_with_the_reference() {
 
 /// The factors by which colours are darkened are those of the exact surface, but for outlines and creases.
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn the_lighting_is_that_of_the_exact_depths() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     // Unfiltered sprites show tangent planes, which stand out of the surface by up to half a radius' square: their median error, 0.0038 of 10⁵

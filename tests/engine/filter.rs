@@ -56,9 +56,11 @@ fn every_kind_of_picture_is_convolved() {
                 (Alpha::Coverage, Some([0.9, 0.2, 0.4])),
                 (Alpha::Mask, None),
             ];
-            // Each pair once or twice, by either rasterizer.
-            let some = (2 * i + k) % 4;
-            for &(alpha, background) in &all[if_whole(0..4, some..some + 1)] {
+            // The short run has one pair of each method, by either rasterizer in turns.
+            if !if_whole(true, k == i % 2) {
+                continue;
+            }
+            for &(alpha, background) in &all[if_whole(0..4, i..i + 1)] {
                 let shading = [Shading::Lit, Shading::Colour][(i + k) % 2];
                 let pixel_filter = [0.75, 2.5][k];
                 let lowpass = method.lowpass + pixel_filter;

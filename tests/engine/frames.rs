@@ -69,7 +69,7 @@ fn progressive_frames_create_nothing_after_both_variants() {
     let Some(device) = new_device(DeviceLimits::default()) else { return };
     let mut surfels = sphere(5_000);
     surfels.weights = Some(Weights::collect((0..5_000).map(|i| (0.2, (i % 9 == 0).then_some([0.2; 4])))));
-    for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
+    for &rasterizer in &[Rasterizer::Compute, Rasterizer::Draw][..if_whole(2, 1)] {
         let scene = Scene::upload(&device, &surfels).unwrap();
         let mut renderer = Renderer::new(&device, all_outputs(rasterizer)).unwrap();
         let mut progressive = Progressive::default();
@@ -247,6 +247,7 @@ fn without_float32_blending_sums_are_half_floats_or_on_the_compute_path() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn without_timestamps_there_are_no_times() {
     let Some(device) = device(DeviceLimits { timestamps: Some(false), ..Default::default() }) else { return };
     let scene = Scene::upload(&device, &sphere(2_000)).unwrap();
@@ -340,7 +341,7 @@ fn sizes_within_the_limits_work_and_others_are_rejected() {
     };
     let surfels = sphere(2_000);
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
-        for size in [[1, 1], [1, 301], [1500, 1], [1500, 3], [127, 65]] {
+        for &size in &[[1, 1], [1500, 3], [127, 65], [1, 301], [1500, 1]][..if_whole(5, 3)] {
             let picture = picture_on(&device, &surfels, RenderOptions { size, ..all_outputs(rasterizer) });
             assert_eq!(picture.colour.len() as u32, size[0] * size[1]);
             assert!(picture.colour.iter().flatten().all(|c| c.is_finite()), "{rasterizer:?} {size:?}");
@@ -366,7 +367,7 @@ fn repeated_frames_are_the_same_picture() {
         let settings = Settings { alpha: Alpha::Coverage, ..splats_alone() };
         let mut frame = || renderer.render_picture(&scene, &camera(SIZE), &settings).unwrap().0;
         let first = frame();
-        for _ in 0..10 {
+        for _ in 0..if_whole(10, 4) {
             assert!(frame() == first, "{rasterizer:?}");
         }
     }
@@ -383,7 +384,7 @@ fn scenes_and_renderers_come_and_go_while_other_threads_record() {
     std::thread::scope(|threads| {
         for _ in 0..12 {
             threads.spawn(|| {
-                for _ in 0..60 {
+                for _ in 0..if_whole(60, 20) {
                     assert!(picture_on(on, &surfels, small) == picture);
                 }
             });

@@ -179,11 +179,11 @@ fn lines_and_triangles_that_are_none() {
         ("directions of length 0", false, |p| p.directions.fill(Vec3::ZERO)),
         ("a thousand of the same", false, |p| p.triangles = vec![[0, 1, 3]; 1000]),
     ];
-    for (name, is_refused, attack) in attacks {
+    for (i, (name, is_refused, attack)) in attacks.into_iter().enumerate() {
         let mut primitives = square();
         attack(&mut primitives);
         let model = Model { surfels: sphere(), primitives };
-        for rasterizer in BOTH {
+        for &rasterizer in &BOTH[if_whole(0..2, i % 2..i % 2 + 1)] {
             let outcome = meet(name, || {
                 let scene = Scene::upload(&device, &model)?;
                 let settings = Method::named("pull-push").unwrap().settings();

@@ -65,18 +65,24 @@ fn intersecting<'a>(a: &'a Surfels, b: &'a Surfels) -> [(&'a Surfels, DMat4); 2]
     [(a, exact(1.0, [1.0, 0.0, 2.0], [0.0; 3])), (b, exact(0.5, [0.0, 3.0, 1.0], [1.0, 0.0, 0.0]))]
 }
 
-/// Asserts that placed parts match the reference of one merged cloud.
+/// Asserts that placed parts match the reference of one merged cloud. The short run has each rasterizer with one camera, which is another one in
+/// each `turn` of three.
 fn assert_agree(
     device: &Arc<Device>,
     renderers: &Renderers,
     parts: &[(&Surfels, DMat4)],
     settings: &Settings,
-    what: &str,
+    (what, turn): (&str, usize),
 ) {
     let (one, list) = (merged(parts, settings.lighting.albedo), uploaded(device, parts));
-    for (name, camera) in [("perspective", perspective()), ("parallel", parallel()), ("rising", rising())] {
+    let cameras = [("perspective", perspective()), ("parallel", parallel()), ("rising", rising())];
+    for (i, (name, camera)) in cameras.into_iter().enumerate() {
+        let some = if_whole(0..2, [0..1, 1..2, 0..0][(i + turn) % 3].clone());
+        if some.is_empty() {
+            continue;
+        }
         let expected = Expected::new(&one, &camera, SIZE, settings, &Tolerance::default()).unwrap();
-        for rasterizer in RASTERIZERS {
+        for &rasterizer in &RASTERIZERS[some] {
             let (picture, _) = renderers.render_instances(&list, &camera, settings, options(rasterizer));
             let comparison = expected.compare(&picture).unwrap();
             let ambiguous = comparison.ambiguous as f64 / comparison.object_pixels as f64;
@@ -173,7 +179,7 @@ fn a_placed_scene_matches_the_reference_of_transformed_surfels() {
         ("turned", turned(1.3, [0.3, -1.0, 0.4], 2.2, [0.3, 0.1, -0.4])),
     ];
     for &(name, place) in &placements[if_whole(0, 1)..] {
-        assert_agree(&device, &renderers, &[(&surfels, place)], &settings("perspective-ewa"), name);
+        assert_agree(&device, &renderers, &[(&surfels, place)], &settings("perspective-ewa"), (name, 0));
     }
     assert_silent(&device);
 }
@@ -185,7 +191,7 @@ fn intersecting_scenes_match_one_cloud_by_every_method() {
     let (a, b) = (painted(3_000), rich(1_500));
     let renderers = Renderers::new(&device);
     for method in Method::SPLATTING {
-        assert_agree(&device, &renderers, &intersecting(&a, &b), &settings(method.name), method.name);
+        assert_agree(&device, &renderers, &intersecting(&a, &b), &settings(method.name), (method.name, 0));
     }
     assert_silent(&device);
 }
@@ -217,12 +223,13 @@ fn scenes_with_different_streams_match_one_cloud() {
         // One of them without colours, in either order; the first has an identity transform.
         let pairs = [[(&bare, first), (&all, second)], [(&bytes, first), (&bare, second)]];
         for pair in &pairs[if_whole(0..2, i % 2..i % 2 + 1)] {
-            assert_agree(&device, &renderers, pair, &settings, name);
+            assert_agree(&device, &renderers, pair, &settings, (name, i));
         }
     }
     let by_surfel = Splatting { normalization: Normalization::Surfel, ..Splatting::default() };
     let [a, b] = [bare, all].map(weighted);
-    assert_agree(&device, &renderers, &intersecting(&a, &b), &with(&|s| s.splatting = by_surfel), "weights");
+    let settings = with(&|s| s.splatting = by_surfel);
+    assert_agree(&device, &renderers, &intersecting(&a, &b), &settings, ("weights", 2));
     assert_silent(&device);
 }
 
@@ -313,7 +320,7 @@ fn ids_continue_from_scene_to_scene() {
     let one = merged(&intersecting(&a, &b), settings.lighting.albedo);
     let (list, alone) = (uploaded(&device, &intersecting(&a, &b)), Scene::upload(&device, &one).unwrap());
     assert_eq!(Instances::<Scene>::from(&list).first_ids(), [0, 20_000]);
-    for rasterizer in RASTERIZERS {
+    for &rasterizer in &RASTERIZERS[if_whole(0..2, 1..2)] {
         let outputs = Outputs { id: true, ..options(rasterizer).outputs };
         let mut renderer = Renderer::new(&device, RenderOptions { outputs, ..options(rasterizer) }).unwrap();
         let (placed, _) = renderer.render_picture(&list, &perspective(), &settings).unwrap();

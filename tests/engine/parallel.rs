@@ -2,7 +2,7 @@
 
 use crate::support::gpu::{Renderers, assert_silent, device};
 use crate::support::sampling::{Random, paint_srgb};
-use crate::support::{methods, placing};
+use crate::support::{if_whole, methods, placing};
 use glam::DVec3;
 use std::sync::Arc;
 use surfel::geometry::{Bounds, Camera, Surfels};
@@ -90,10 +90,10 @@ fn far_pictures_are_those_of_the_reference() {
     let renderers = Renderers::new(&device);
     let surfels = surfels();
     let settings = Method::named("perspective-ewa").unwrap().settings();
-    for (away, planes) in OTHERS {
+    for (i, (away, planes)) in OTHERS.into_iter().enumerate() {
         let camera = camera(away, planes);
         let expected = Expected::new(&surfels, &camera, SIZE, &settings, &Tolerance::default()).unwrap();
-        for rasterizer in [Rasterizer::Compute, Rasterizer::Draw] {
+        for &rasterizer in &[Rasterizer::Compute, Rasterizer::Draw][if_whole(0..2, i % 2..i % 2 + 1)] {
             let picture = renderers.render(&surfels, &camera, &settings, options(rasterizer));
             let comparison = expected.compare(&picture).unwrap();
             assert!(comparison.passed(), "{rasterizer:?} from {away}: {:?}", comparison.failures.first());

@@ -48,7 +48,8 @@ fn scans_have_their_meshes_outlines_and_no_holes() {
         let bare = Cloud { positions: mesh.positions.clone(), origin: mesh.origin, ..Default::default() };
         for (from, cloud) in [("faces", mesh.clone()), ("neighbours", bare)] {
             let (surfels, _) = cloud.into_surfels(&Estimate::default(), &()).unwrap();
-            for (view, camera) in cameras(&surfels.bounds().unwrap()).iter().enumerate() {
+            for (view, camera) in cameras(&surfels.bounds().unwrap()).iter().take(if_whole(3, 1)).enumerate()
+            {
                 let truth = mesh::silhouette(&mesh, camera, [SIDE; 2]);
                 let coverage = mesh::compare(&truth, &covered(&render(&device, &surfels, camera)), SIDE);
                 println!("{name}, radii from {from}, view {view}: {coverage:?}");

@@ -8,12 +8,14 @@ use super::sampling::{Random, bumpy_sphere, clip, forget_sides, paint_linear, pa
 use super::settings::splats_alone;
 use glam::{DMat4, DVec3, DVec4};
 use std::f64::consts::TAU;
+use std::sync::LazyLock;
 use surfel::Settings;
 use surfel::geometry::{Camera, Colours, Surfels};
 use surfel::settings::{Cull, DirectionalLight, Shading, Widen};
 use surfel::verify::reference::Surfel;
 
 /// A scene, its cameras and the frame to render.
+#[derive(Clone)]
 pub struct Case {
     /// Unique, for messages.
     pub name: &'static str,
@@ -27,8 +29,13 @@ pub struct Case {
     pub size: [u32; 2],
 }
 
-/// All cases.
+/// All cases, which are made once.
 pub fn cases() -> Vec<Case> {
+    static CASES: LazyLock<Vec<Case>> = LazyLock::new(make);
+    CASES.clone()
+}
+
+fn make() -> Vec<Case> {
     let circles =
         [horizon(), edge_on(), sub_pixel(), huge(), inside(), far_origin(), orthographic(), off_centre()];
     let cases = circles
