@@ -71,6 +71,7 @@ fn around(disc: &Disc, random: &mut Random) -> Vec<DVec3> {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn what_discs_keep_is_on_the_surface() {
     for sampler in ["jittered", "blue-noise", "grid", "scanner"] {
         let surfels = scenes::open(&format!("{FINE}&sampler={sampler}")).unwrap();
