@@ -20,7 +20,7 @@ use surfel::geometry::srgb::{decode, encode};
 use surfel::geometry::{Camera, Surfels};
 use surfel::settings::{Alpha, Shading};
 use surfel::verify::reference::Projector;
-use surfel::vk::{Device, DeviceOptions};
+use surfel::vk::DeviceLimits;
 use surfel::{Rasterizer, RenderOptions, Settings};
 
 /// Half a unit in the last place of a float32 near 1.
@@ -139,7 +139,7 @@ fn difference(before: &[[f32; 4]], after: &[[f32; 4]], factors: &[f64]) -> f64 {
 fn surfels_are_darkened_as_in_the_engines_own_pictures() {
     let Some(host) = open(|all| all) else { return };
     let view = View::whole(camera(), SIZE);
-    let device = Device::open(&DeviceOptions::default()).unwrap();
+    let device = crate::support::gpu::device(DeviceLimits::default()).unwrap();
     let rasterizer = Some(Rasterizer::Draw);
     let options = RenderOptions { size: SIZE, rasterizer: rasterizer.into(), ..Default::default() };
     let own = kinds().map(|settings| {

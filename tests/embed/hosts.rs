@@ -6,6 +6,7 @@ use crate::host::frame::{Frame, IDS, Kind, Way};
 use crate::host::mesh::Mesh;
 use crate::host::native::{self, Native};
 use crate::host::scene::{Corners, parallelogram};
+use crate::support::if_whole;
 use crate::{FLOATS, FOUR, ONE};
 use ash::vk;
 use glam::{DVec3, Vec3};
@@ -14,7 +15,7 @@ use surfel::embed::{self, Changes, Options, Renderer, View};
 use surfel::geometry::{Camera, Surfels};
 use surfel::settings::Alpha;
 use surfel::settings::methods::Method;
-use surfel::vk::{Device, DeviceOptions};
+use surfel::vk::{Device, DeviceLimits};
 use surfel::{Outputs, Picture, Rasterizer, RenderOptions, Scene, Settings};
 
 const PLAIN: Kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
@@ -30,7 +31,7 @@ fn alone(
     outputs: Outputs,
     rasterizer: Option<Rasterizer>,
 ) -> Picture {
-    let device = Device::open(&DeviceOptions::default()).unwrap();
+    let device = crate::support::gpu::device(DeviceLimits::default()).unwrap();
     let options = RenderOptions { size: SIZE, outputs, rasterizer: rasterizer.into(), ..Default::default() };
     crate::support::gpu::render(&device, surfels, &camera(), settings, options)
 }
@@ -85,15 +86,15 @@ fn depth_of_every_format_is_the_surfaces() {
     let settings = settings("sprites-unfiltered");
     let outputs = Outputs { depth: true, ..Outputs::default() };
     let own = alone(&surfels(), &settings, outputs, Some(Rasterizer::Draw));
+    let device = host.external_device(None).unwrap();
+    let scene = upload(&host, &device, &surfels());
     for (format, step) in depths(&host) {
         for (way, reversed) in [(Way::Subpass, true), (Way::Rendering, true), (Way::Rendering, false)] {
             let what = format!("{format:?} {way:?} {reversed}");
             let kind = Kind { way, reversed, ..PLAIN };
             let frame = Frame::with_depth(&host, kind, SIZE, &[], format).unwrap();
-            let device = host.external_device(None).unwrap();
             let renderer = renderer(&device, &frame, Some(Rasterizer::Draw));
-            let scene = upload(&host, &device, &surfels());
-            let mut fixture = Fixture { frame, renderer, scene, device };
+            let mut fixture = Fixture { frame, renderer, scene: scene.clone(), device: device.clone() };
             let camera = if reversed { camera() } else { rising() };
             record(&host, &mut fixture, &view(camera), &settings);
             assert_depths(&fixture.frame.read_depths(&host).unwrap(), &own, reversed, step, &what);
@@ -140,8 +141,10 @@ fn native_subpasses_start_from_depth_of_every_format_and_leave_such() {
         Settings { epsilon: 0.1, alpha: Alpha::Mask, ..settings("perspective-ewa").in_subpasses() };
     let device = host.external_device(None).unwrap();
     let scene = upload(&host, &device, &surfels());
-    for (format, step) in depths(&host) {
-        for (samples, reversed) in [(ONE, true), (ONE, false), (FOUR, true)] {
+    for (i, (format, step)) in depths(&host).into_iter().enumerate() {
+        // The short run has one of these for each format, in turns.
+        let all = [(ONE, true), (FOUR, true), (ONE, false)];
+        for &(samples, reversed) in &all[if_whole(0..3, i % 3..i % 3 + 1)] {
             let view = view(far_away(reversed));
             let kind = Kind { samples, reversed, ..PLAIN };
             let frame = Frame::with_depth(&host, kind, SIZE, &[], format).unwrap();

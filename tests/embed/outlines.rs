@@ -7,13 +7,14 @@ use crate::host::mesh::Mesh;
 use crate::host::native;
 use crate::host::scene::parallelogram;
 use crate::native_rig::{D32, Drawn};
+use crate::support::if_whole;
 use crate::{FLOATS, FOUR, ONE};
 use glam::{DVec3, Vec3};
 use surfel::embed::{self, Options, Renderer, View};
 use surfel::geometry::Camera;
 use surfel::settings::Alpha;
 use surfel::settings::methods::Method;
-use surfel::vk::{Device, DeviceOptions};
+use surfel::vk::DeviceLimits;
 use surfel::{Outputs, Picture, Rasterizer, RenderOptions, Settings};
 
 const SIZE: [u32; 2] = [64, 64];
@@ -30,7 +31,7 @@ fn settings(name: &str) -> Settings {
 
 /// The engine's own picture.
 fn alone(settings: &Settings, rasterizer: Rasterizer, id: bool) -> Picture {
-    let device = Device::open(&DeviceOptions::default()).unwrap();
+    let device = crate::support::gpu::device(DeviceLimits::default()).unwrap();
     let outputs = Outputs { normal: true, depth: true, id };
     let options = RenderOptions { size: SIZE, outputs, rasterizer: rasterizer.into(), ..Default::default() };
     crate::support::gpu::render(&device, &sphere(3_000), &view().camera, settings, options)
@@ -167,12 +168,11 @@ fn least_alpha(host: &Host, kind: Kind) -> f32 {
 #[test]
 fn a_wall_that_is_drawn_after_surfels_shows_behind_their_outline() {
     let Some(host) = open(|all| all) else { return };
-    for samples in [ONE, FOUR] {
-        for way in [Way::Rendering, Way::Subpass] {
-            let kind = Kind { normals: false, way, samples, ..KIND };
-            let least = least_alpha(&host, kind);
-            assert!((0.5..1.0).contains(&least), "{kind:?}: α {least}");
-        }
+    let all = [(ONE, Way::Rendering), (FOUR, Way::Subpass), (ONE, Way::Subpass), (FOUR, Way::Rendering)];
+    for &(samples, way) in &all[..if_whole(4, 2)] {
+        let kind = Kind { normals: false, way, samples, ..KIND };
+        let least = least_alpha(&host, kind);
+        assert!((0.5..1.0).contains(&least), "{kind:?}: α {least}");
     }
     assert_silent(&host);
 }
