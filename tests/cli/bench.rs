@@ -1,7 +1,7 @@
 //! `surfel bench`.
 
 use crate::matrix::if_whole;
-use crate::program::Program;
+use crate::program::{Program, Run};
 use base64::prelude::{BASE64_STANDARD, Engine};
 use serde_json::Value;
 use std::io::Read;
@@ -12,7 +12,14 @@ fn json(program: &Program, name: &str) -> Value {
     serde_json::from_slice(&std::fs::read(program.path(name)).unwrap()).unwrap()
 }
 
+/// Reports `a.json` again, as `b.json` and `again`, without a device.
+fn from_stored_results(program: &Program) -> Run {
+    let no_device = [("VK_DRIVER_FILES", "none"), ("VK_ICD_FILENAMES", "none")];
+    program.run_with("bench --from a.json --json b.json --report again", &no_device)
+}
+
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn an_input_is_measured_stored_and_reported_again() {
     let Some(program) = Program::with_device("an_input_is_measured_stored_and_reported_again") else {
         return;
@@ -46,11 +53,7 @@ fn an_input_is_measured_stored_and_reported_again() {
     let page = |folder: &str| std::fs::read_to_string(program.path(folder).join("index.html")).unwrap();
     assert!(page("page").contains("<svg"));
 
-    // Without a device, from the stored results.
-    let again = program.run_with(
-        "bench --from a.json --json b.json --report again",
-        &[("VK_DRIVER_FILES", "none"), ("VK_ICD_FILENAMES", "none")],
-    );
+    let again = from_stored_results(&program);
     assert_eq!(again.text(), run.text());
     assert_eq!(json(&program, "b.json"), results);
     assert_eq!(page("again"), page("page"));
@@ -156,16 +159,25 @@ fn the_command_beside_a_picture_renders_it_again() {
 fn a_limit_of_time_leaves_runs_out() {
     let Some(program) = Program::with_device("a_limit_of_time_leaves_runs_out") else { return };
     let arguments = "scene:torus --points 1000,3000000 --method sprites --size 64x64 --minutes 0.001";
-    let run = program.run(&format!("bench {arguments} --json a.json --report page"));
+    let run = program.run(&format!("bench {arguments} --json a.json --csv a.csv --report page"));
     let results = json(&program, "a.json");
     let session = &results["sessions"][0];
     assert_eq!(session["provenance"]["command"], format!("surfel bench {arguments}"));
     let missing = session["missing"].as_array().unwrap();
     assert!(missing.iter().any(|missing| missing["points"] == 3_000_000), "{missing:?}");
-    assert!(session["runs"].as_array().unwrap().iter().all(|run| run["points"] == 1000));
+    let runs = session["runs"].as_array().unwrap();
+    assert!(runs.iter().all(|run| run["points"] == 1000));
+    // A header and a row per run; nothing if there are none.
+    let rows = std::fs::read_to_string(program.path("a.csv")).unwrap().lines().count();
+    assert_eq!(rows, if runs.is_empty() { 0 } else { 1 + runs.len() });
     assert!(run.text().contains("runs were not measured"), "{}", run.text());
-    let page = std::fs::read_to_string(program.path("page/index.html")).unwrap();
-    assert!(page.contains("runs were not measured"));
+    let page = |folder: &str| std::fs::read_to_string(program.path(folder).join("index.html")).unwrap();
+    assert!(page("page").contains("runs were not measured"));
+
+    let again = from_stored_results(&program);
+    assert_eq!(again.text(), run.text());
+    assert_eq!(json(&program, "b.json"), results);
+    assert_eq!(page("again"), page("page"));
 }
 
 #[test]

@@ -76,6 +76,7 @@ fn wrong_arguments_exit_with_2_before_anything_is_read() {
         ("--up 0,0,0", "it is zero: give a direction such as 0,0,1"),
         ("--lod fine", "give a number, for example 0.5"),
         ("--every 0", "give a whole number above 0"),
+        ("--scanner there", "give auto, file or X,Y,Z"),
         (
             "--class grond",
             "give numbers up to 255 such as 2,6, or names such as ground: `surfel info` lists the classes",
@@ -204,7 +205,7 @@ fn camera_files_are_checked() {
     let run = program.run("render a.ply -o out.png --reference --camera none.json");
     assert!(run.error(1).starts_with("none.json: cannot read: "), "{}", run.err);
     program.write("camera.json", good);
-    program.run("render a.ply -o out.png --reference --camera camera.json").text();
+    program.run("render a.ply -o out.png --reference --camera camera.json --size 16x16").text();
 }
 
 #[test]

@@ -94,6 +94,7 @@ fn scans_models_and_gaussians_become_pictures() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn the_scanner_of_a_lidar_is_found_given_or_refused() {
     let program = Program::new();
     // Ground 2 below a lidar, whose ranges have errors.

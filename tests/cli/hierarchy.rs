@@ -1,5 +1,6 @@
 //! `render --hierarchy paper`: cuts of the point octree.
 
+use crate::matrix::if_whole;
 use crate::program::Program;
 use serde_json::Value;
 
@@ -15,8 +16,9 @@ fn a_cut_has_fewer_surfels_and_is_drawn_by_every_rasterizer() {
         let run = program.run(&format!("render {SCENE} -o a.png --json - {options}"));
         serde_json::from_str(run.text()).unwrap()
     };
-    let ways = ["--reference", "--validate --rasterizer draw", "--validate --rasterizer compute"];
-    let all = ways.map(|way| report(&format!("--lod 4 --cull none {way}")));
+    let ways = ["--reference", "--validate --rasterizer compute", "--validate --rasterizer draw"];
+    let ways = &ways[..if_whole(3, 2)];
+    let all: Vec<_> = ways.iter().map(|way| report(&format!("--lod 4 --cull none {way}"))).collect();
     let octree = &all[0]["octree"];
     let of = |key: &str| octree[key].as_f64().unwrap();
     assert!((7_000.0..9_000.0).contains(&of("nodes")) && of("bytes") < 75.0 * 20_000.0, "{octree}");
@@ -27,10 +29,12 @@ fn a_cut_has_fewer_surfels_and_is_drawn_by_every_rasterizer() {
         assert_eq!(report["counts"], all[0]["counts"], "what is drawn");
         assert_eq!(report["octree"]["surfels"], octree["surfels"]);
     }
-    // Nodes that face away are left out beforehand.
-    let front = report("--lod 4 --cull back");
+    // Nodes that face away are left out beforehand, on the CPU.
+    let by = if_whole("", "--reference");
+    let front = report(&format!("--lod 4 --cull back {by}"));
     assert!(2.0 * front["octree"]["surfels"].as_f64().unwrap() < 1.5 * of("surfels"), "{}", front["octree"]);
-    let grid = program.run("render scene:bumpy-sphere?points=2000 --size 32x32 -o a.png --json -");
+    let grid =
+        program.run(&format!("render scene:bumpy-sphere?points=2000 --size 32x32 -o a.png {by} --json -"));
     let grid: Value = serde_json::from_str(grid.text()).unwrap();
     assert_eq!((&grid["hierarchy"], &grid["octree"]), (&"grid".into(), &Value::Null));
 }

@@ -3,13 +3,20 @@
 #[path = "../support/skipping.rs"]
 mod skipping;
 
+use crate::matrix::if_whole;
 pub use skipping::{data, say_skipped};
 use std::path::PathBuf;
 use std::process::{Command, Output};
+use std::sync::OnceLock;
 use tempfile::TempDir;
 
 /// Mesa's cache of compiled shaders, shared by all runs of the program and of the tests.
 pub const SHADER_CACHE: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/shaders");
+
+/// Options of the frame with the fewest pipelines in the short run, for tests of something else.
+pub fn plain() -> &'static str {
+    if_whole("", "--alpha mask --cull none --pixel-filter none")
+}
 
 /// Exit code and output of a run.
 pub struct Run {
@@ -47,8 +54,10 @@ impl Program {
 
     /// The program, if there is a Vulkan device. Otherwise the test is skipped with a note, or fails if `SURFEL_REQUIRE_GPU` is 1.
     pub fn with_device(test: &str) -> Option<Self> {
+        // All tests have the same devices.
+        static DEVICES: OnceLock<Run> = OnceLock::new();
         let program = Self::new();
-        let devices = program.run("devices");
+        let devices = DEVICES.get_or_init(|| program.run("devices"));
         if devices.code == 0 {
             return Some(program);
         }
