@@ -3,7 +3,7 @@
 use crate::display::key;
 use crate::program::surfels;
 use crate::view::View;
-use crate::{SPHERE, setup};
+use crate::{setup, sphere};
 
 /// A wall of discs in the plane z = 0, from −4 to 4.
 fn wall() -> String {
@@ -36,7 +36,7 @@ fn the_wheel_zooms_to_the_surface_under_the_cursor() {
 #[test]
 fn a_drag_with_ctrl_turns_about_the_eye() {
     let Some((display, program)) = setup("a_drag_with_ctrl_turns_about_the_eye") else { return };
-    let mut view = View::open(&display, &program, &format!("{SPHERE} --size 400x300 --fresh"));
+    let mut view = View::open(&display, &program, &format!("{} --size 400x300 --fresh", sphere()));
     let first = view.picture(|_| true)["camera"].clone();
     display.hold(key::CONTROL, true);
     display.drag(view.window, 1, &[[100, 150], [120, 160], [140, 150]]);

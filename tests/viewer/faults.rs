@@ -1,6 +1,7 @@
 //! Faults of a driver, such as a lost device or an outdated swapchain, which a Vulkan layer simulates.
 
 use crate::display::PATIENCE;
+use crate::matrix::if_whole;
 use crate::program::{Program, say_skipped};
 use crate::setup;
 use crate::view::{End, View, command};
@@ -161,7 +162,7 @@ fn presentation_is_retried_until_it_succeeds() {
     let Some(command) = faulty(test, &program, &display.name, SMALL, &faults) else { return };
     let mut view = View::start(&display, command);
     view.picture(|_| true);
-    for (i, (_, path)) in paths.iter().cycle().take(4).enumerate() {
+    for (i, (_, path)) in paths.iter().cycle().take(if_whole(4, 2)).enumerate() {
         let size = [200 + 10 * i as u32, 150];
         let fault = Fault::begin(path);
         display.resize(view.window, size);

@@ -2,7 +2,7 @@
 
 use crate::display::key;
 use crate::view::View;
-use crate::{SPHERE, setup};
+use crate::{SPHERE, setup, sphere};
 use serde_json::json;
 
 #[test]
@@ -14,7 +14,7 @@ fn keys_of_flight_are_physical_keys() {
     display.exchange(['w', 'z']);
     display.exchange(['q', 'a']);
     let z = u32::from('z');
-    let mut view = View::open(&display, &program, &format!("{SPHERE} --size 320x240"));
+    let mut view = View::open(&display, &program, &format!("{} --size 320x240", sphere()));
     let first = view.picture(|_| true)["camera"].clone();
     display.hold(z, true);
     view.until("picture", |event| event["moving"] == true && event["camera"] != first);

@@ -21,9 +21,14 @@ mod view;
 mod window;
 
 use display::Display;
-use program::Program;
+use program::{Program, plain};
 
 const SPHERE: &str = "scene:bumpy-sphere?points=5000";
+
+/// [`SPHERE`] with few pipelines in the short run, for tests of neither the panel nor saved settings.
+fn sphere() -> String {
+    format!("{SPHERE} {}", plain())
+}
 
 /// The raster path, which the tests of saved pictures use.
 const DRAW: &str = "--rasterizer draw";

@@ -1,16 +1,17 @@
 //! The window: sizes, visibility, layout of the panel, missing displays.
 
 use crate::display::PATIENCE;
+use crate::matrix::if_whole;
 use crate::program::{Program, surfels};
 use crate::view::{End, View, command};
-use crate::{SPHERE, setup};
+use crate::{SPHERE, setup, sphere};
 use std::process::Output;
 use std::time::{Duration, Instant};
 
 #[test]
 fn a_hidden_window_comes_back() {
     let Some((display, program)) = setup("a_hidden_window_comes_back") else { return };
-    let mut view = View::open(&display, &program, &format!("{SPHERE} --size 320x240"));
+    let mut view = View::open(&display, &program, &format!("{} --size 320x240", sphere()));
     view.picture(|_| true);
     for size in [[300, 200], [320, 240]] {
         display.map(view.window, false);
@@ -30,7 +31,7 @@ fn input_switches_between_panel_and_picture_at_once() {
     let mut view = View::open(&display, &program, &format!("{SPHERE} --size 640x480"));
     let mut before = view.picture(|_| true);
     let (panel, way) = ([600, 300], [[100, 150], [200, 170], [160, 200]]);
-    for _ in 0..3 {
+    for _ in 0..if_whole(3, 1) {
         // Before the window renders another frame.
         display.click(view.window, panel, 1, 1);
         display.drag(view.window, 1, &way);
@@ -73,7 +74,7 @@ fn an_empty_window_waits_and_a_bad_first_file_is_a_message() {
 #[test]
 fn a_panel_keeps_its_width_or_is_not_there() {
     let Some((display, program)) = setup("a_panel_keeps_its_width_or_is_not_there") else { return };
-    let mut view = View::open(&display, &program, &format!("{SPHERE} --size 100x60"));
+    let mut view = View::open(&display, &program, &format!("{} --size 100x60", sphere()));
     view.picture(|event| event["picture"] == serde_json::json!([100, 60]));
     for (size, widths) in [([1200u16, 900u16], 290..=310), ([640, 480], 240..=320), ([400, 300], 0..=0)] {
         display.resize(view.window, size.map(u32::from));
@@ -95,7 +96,7 @@ fn a_window_may_be_closed_while_it_loads() {
 #[test]
 fn dense_screens_have_larger_panels() {
     let Some((display, program)) = setup("dense_screens_have_larger_panels") else { return };
-    let mut command = command(&program, &display.name, &format!("{SPHERE} --size 640x480"));
+    let mut command = command(&program, &display.name, &format!("{} --size 640x480", sphere()));
     command.env("WINIT_X11_SCALE_FACTOR", "2");
     let mut view = View::start(&display, command);
     assert_eq!(view.picture(|_| true)["size"], serde_json::json!([640, 480]), "px are px");
@@ -121,7 +122,7 @@ fn without_a_display_the_error_names_render() {
 #[test]
 fn an_unknown_device_is_named_in_the_error() {
     let Some((display, program)) = setup("an_unknown_device_is_named_in_the_error") else { return };
-    let command = command(&program, &display.name, &format!("{SPHERE} --device none-such"));
+    let command = command(&program, &display.name, &format!("{} --device none-such", sphere()));
     let End { code, errors } = View::begin(&display, command).end();
     assert!(code == 3 && errors.contains("none-such"), "{code} {errors}");
 }
@@ -159,7 +160,7 @@ fn wait_for<R>(view: &View<'_>, take: impl Fn(&image::RgbImage) -> Option<R>) ->
             return found;
         }
         assert!(start.elapsed() < PATIENCE, "it does not appear");
-        std::thread::sleep(Duration::from_millis(10));
+        std::thread::sleep(Duration::from_millis(50));
     }
 }
 
@@ -178,7 +179,7 @@ fn an_error_is_closed_by_its_button() {
     // Points without a spacing.
     program.write("heap.xyz", "1 2 3\n".repeat(4));
     let heap = program.path("heap.xyz").canonicalize().unwrap();
-    let mut view = View::open(&display, &program, &format!("{SPHERE} --size 400x300 --fresh -q"));
+    let mut view = View::open(&display, &program, &format!("{} --size 400x300 --fresh -q", sphere()));
     view.picture(|_| true);
     // The error is above the picture, where nothing is.
     let has_error = |pixels: &image::RgbImage| pixels.get_pixel(395, 5).0 != [0; 3];
