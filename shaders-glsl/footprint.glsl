@@ -68,9 +68,9 @@ float key_of_disc(Disc disc, float lean) {
 }
 
 // Depth below its centre down to which the disc of a front-facing convex surface covers samples, relative to the radius of curvature and to
-// the cosine between normal and viewing ray. At grazing angles the tangent plane of a sphere leaves its outline at twice that depth, but the
-// discs of neighbours overlap: pictures of scans are nearest to the truth with half of it.
-const float TURN_DEPTH = 0.25;
+// the cosine between normal and viewing ray: of circles, and of ellipses. At grazing angles the tangent plane of a sphere leaves its outline at
+// the depth of ellipses, which are of triangles and hardly overlap; circles overlap, and pictures of scans are nearest to the truth with half.
+const float TURN_DEPTH[2] = {0.25, 0.5};
 
 // See least_key; 0 where the surface does not turn away.
 float least_key_of(uint i, Disc disc) {
@@ -81,7 +81,8 @@ float least_key_of(uint i, Disc disc) {
     // Down the tangent plane, as the eye sees it.
     float curvature = curvature_along(stored, ray * tangents(disc.normal));
     if (!(curvature > 0.0)) return 0.0;
-    float depth = TURN_DEPTH * -disc.facing.x / distance / curvature, key = key_of_disc(disc, 0.0);
+    bool is_ellipse = ELLIPSES && ellipse_of(i).w < 1.0;
+    float depth = TURN_DEPTH[uint(is_ellipse)] * -disc.facing.x / distance / curvature, key = key_of_disc(disc, 0.0);
     return PERSPECTIVE ? farther_key(key, depth / distance) : key - view.key_slope * depth;
 }
 

@@ -163,9 +163,9 @@ const LEAST_AREA: f64 = 1e-30;
 /// Largest variance along the major axis of a drawn splat, px²: float32 overflows beyond.
 const LARGEST_VARIANCE: f64 = 1e30;
 
-/// Depth of the turn line, in radii of curvature times the cosine of the angle between normal and viewing ray. At grazing
-/// angles the tangent plane of a sphere leaves its outline at twice that depth.
-const TURN_DEPTH: f64 = 0.25;
+/// Depth of the turn line of circles, and of ellipses, in radii of curvature times the cosine of the angle between normal and viewing ray. At
+/// grazing angles the tangent plane of a sphere leaves its outline at the depth of ellipses.
+const TURN_DEPTH: [f64; 2] = [0.25, 0.5];
 
 /// Largest turn of the normal at the rim of a disc, as a tangent: curvatures of noisy points may be anything.
 const MOST_TURN: f64 = 1.0;
@@ -311,7 +311,8 @@ impl Projector {
         if curvature <= 0.0 {
             return None;
         }
-        let below = -TURN_DEPTH * surfel.normal.dot(ray) / curvature;
+        let turn_depth = TURN_DEPTH[usize::from(surfel.aspect < 1.0)];
+        let below = -turn_depth * surfel.normal.dot(ray) / curvature;
         let distance = self.distance(centre);
         let above = match perspective {
             true => plane - DVec3::X / (distance * (1.0 + below / from_eye)),
