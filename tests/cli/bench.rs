@@ -12,10 +12,18 @@ fn json(program: &Program, name: &str) -> Value {
     serde_json::from_slice(&std::fs::read(program.path(name)).unwrap()).unwrap()
 }
 
-/// Reports `a.json` again, as `b.json` and `again`, without a device.
-fn from_stored_results(program: &Program) -> Run {
+/// The page of a report in `folder`.
+fn page(program: &Program, folder: &str) -> String {
+    std::fs::read_to_string(program.path(folder).join("index.html")).unwrap()
+}
+
+/// Reports `a.json` again, without a device: it has to be the report of `run`, in `page`.
+fn assert_reported_again(program: &Program, run: &Run) {
     let no_device = [("VK_DRIVER_FILES", "none"), ("VK_ICD_FILENAMES", "none")];
-    program.run_with("bench --from a.json --json b.json --report again", &no_device)
+    let again = program.run_with("bench --from a.json --json b.json --report again", &no_device);
+    assert_eq!(again.text(), run.text());
+    assert_eq!(json(program, "b.json"), json(program, "a.json"));
+    assert_eq!(page(program, "again"), page(program, "page"));
 }
 
 #[test]
@@ -50,13 +58,9 @@ fn an_input_is_measured_stored_and_reported_again() {
     }
     let rows = std::fs::read_to_string(program.path("a.csv")).unwrap().lines().count();
     assert_eq!(rows, 1 + runs.len());
-    let page = |folder: &str| std::fs::read_to_string(program.path(folder).join("index.html")).unwrap();
-    assert!(page("page").contains("<svg"));
+    assert!(page(&program, "page").contains("<svg"));
 
-    let again = from_stored_results(&program);
-    assert_eq!(again.text(), run.text());
-    assert_eq!(json(&program, "b.json"), results);
-    assert_eq!(page("again"), page("page"));
+    assert_reported_again(&program, &run);
 }
 
 #[test]
@@ -70,7 +74,7 @@ fn the_truths_filter_can_be_chosen() {
     assert_eq!(session["provenance"]["command"], format!("surfel bench {arguments}"));
     let runs = session["runs"].as_array().unwrap();
     assert!(runs.iter().all(|run| run["error"]["filter"] == "box"));
-    let page = std::fs::read_to_string(program.path("page/index.html")).unwrap();
+    let page = page(&program, "page");
     assert!(page.contains("RMSE, linear light (truth: box)") && !page.contains("truth: Gaussian"));
 }
 
@@ -83,7 +87,7 @@ fn results_of_other_versions_are_marked() {
     program.write("old.json", format!(r#"{{"format":4,"sessions":[{session}]}}"#));
     let run = program.run("bench --from old.json --report page");
     assert!(run.text().contains("0123456789"), "{}", run.text());
-    let page = std::fs::read_to_string(program.path("page/index.html")).unwrap();
+    let page = page(&program, "page");
     assert!(page.contains("0123456789") && page.contains("2026-01-02"));
 }
 
@@ -132,7 +136,7 @@ fn the_command_beside_a_picture_renders_it_again() {
             program.run(&format!("bench {input} {options} --json a.json --report page --quiet")).code,
             0
         );
-        let page = std::fs::read_to_string(program.path("page/index.html")).unwrap();
+        let page = page(&program, "page");
         let session = &json(&program, "a.json")["sessions"][0];
         let mut commands = page.split("<pre><code>").skip(1).map(|rest| {
             let command = rest.split("</code>").next().unwrap().replace("&amp;", "&").replace('\'', "");
@@ -171,13 +175,9 @@ fn a_limit_of_time_leaves_runs_out() {
     let rows = std::fs::read_to_string(program.path("a.csv")).unwrap().lines().count();
     assert_eq!(rows, if runs.is_empty() { 0 } else { 1 + runs.len() });
     assert!(run.text().contains("runs were not measured"), "{}", run.text());
-    let page = |folder: &str| std::fs::read_to_string(program.path(folder).join("index.html")).unwrap();
-    assert!(page("page").contains("runs were not measured"));
+    assert!(page(&program, "page").contains("runs were not measured"));
 
-    let again = from_stored_results(&program);
-    assert_eq!(again.text(), run.text());
-    assert_eq!(json(&program, "b.json"), results);
-    assert_eq!(page("again"), page("page"));
+    assert_reported_again(&program, &run);
 }
 
 #[test]
@@ -213,7 +213,7 @@ fn folders_of_results_are_shown_side_by_side() {
     let suites: Vec<_> =
         suites.iter().map(|session| session["provenance"]["suites"][0].as_str().unwrap()).collect();
     assert_eq!(suites, ["full", "scaling", "full", "scaling"]);
-    let page = std::fs::read_to_string(program.path("page/index.html")).unwrap();
+    let page = page(&program, "page");
     let machines = page.split("<section id=\"machines\">").nth(1).unwrap();
     assert!(
         machines.contains("of GPU-1") && machines.contains("of GPU-2") && machines.contains("4×"),
