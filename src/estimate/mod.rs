@@ -1,6 +1,7 @@
 //! Estimation: from a point cloud to surfels.
 
 mod boundary;
+mod boundary_points;
 mod cell;
 mod creases;
 mod curvature;
@@ -257,7 +258,8 @@ impl Cloud {
     ///
     /// A missing radius is just large enough that the discs of a smooth surface leave no gap, according to the triangles between the
     /// points: faces, or the Delaunay triangulation of the neighbours in the tangent plane. At the boundary of a mesh it is at most what reaches
-    /// the next vertices there. Normalization weights are kept unless radii, number or edges of the discs change; a missing one is the median.
+    /// the next vertices there, and half as large at that of a surface of points. Normalization weights are kept unless radii, number or edges of
+    /// the discs change; a missing one is the median.
     ///
     /// # Errors
     /// [`Error::Usage`](crate::Error::Usage) if what is missing cannot be estimated.
