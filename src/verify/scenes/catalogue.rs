@@ -23,7 +23,7 @@ pub struct SceneInfo {
     /// Parameters of its surface.
     pub surface_parameters: &'static [Parameter],
     pub(super) build: fn(&Query) -> Vec<Piece>,
-    /// Sharp edges for clip lines, if the scene has any.
+    /// Sharp edges and boundaries for clip lines, if the scene has any.
     pub(super) edges: Option<fn(&Query) -> Vec<Edge>>,
 }
 
@@ -55,7 +55,7 @@ impl SceneInfo {
         SAMPLING.iter().chain(self.surface_parameters)
     }
 
-    /// The sharp edges at which discs end, if `query` asks for them.
+    /// The sharp edges and boundaries at which discs end, if `query` asks for them.
     pub(super) fn edges(&self, query: &Query) -> Vec<Edge> {
         self.edges.filter(|_| query.word(CLIPS_NAME) == "on").map_or_else(Vec::new, |edges| edges(query))
     }
@@ -101,12 +101,12 @@ pub const SAMPLING: &[Parameter] = &[
     },
 ];
 
-/// Parameter of scenes with sharp edges.
+/// Parameter of scenes with sharp edges or a boundary.
 const CLIPS: Parameter = Parameter {
     name: CLIPS_NAME,
     default: "on",
     values: Values::Choice(&["on", "off"]),
-    meaning: "whether discs end at sharp edges",
+    meaning: "whether discs end at sharp edges and boundaries",
 };
 /// Name of the parameter for clip lines.
 const CLIPS_NAME: &str = "clips";
@@ -191,9 +191,9 @@ const SCENES: &[SceneInfo] = &[
         name: "scene:disc",
         summary: "a flat disc of radius 1, seen at a flat angle from nearby; a single surfel is the disc itself",
         viewpoint: view([0.0, 0.45, 1.35], [0.0, -0.15, 0.3], 100.0),
-        surface_parameters: &[albedo("gaussian"), frequency("2")],
+        surface_parameters: &[albedo("gaussian"), frequency("2"), CLIPS],
         build: models::disc,
-        edges: None,
+        edges: Some(models::disc_edges),
     },
     SceneInfo {
         name: "scene:torus",

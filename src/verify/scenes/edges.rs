@@ -19,14 +19,16 @@ pub enum Edge {
         /// Whether the solid is the intersection of both half-spaces, not the union.
         convex: bool,
     },
-    /// The rim of a round hole perpendicular to a plane.
+    /// A circle in a plane: the rim of a round hole perpendicular to it, or that of a disc.
     Rim {
-        /// Centre of the rim.
+        /// Centre of the circle.
         centre: DVec3,
         /// Outward unit normal of the plane.
         normal: DVec3,
-        /// Radius of the hole.
+        /// Radius of the circle.
         radius: f64,
+        /// Whether the plane's face is outside of it.
+        hole: bool,
     },
 }
 
@@ -39,7 +41,7 @@ impl Edge {
                 let part = (p - from).dot(along) / along.length_squared();
                 Some(from + part.clamp(0.0, 1.0) * along)
             }
-            Self::Rim { centre, normal, radius } => {
+            Self::Rim { centre, normal, radius, .. } => {
                 Some(centre + radius * (p - centre).reject_from_normalized(normal).try_normalize()?)
             }
         }
@@ -49,7 +51,10 @@ impl Edge {
     fn faces(&self, foot: DVec3) -> ([DVec3; 2], bool) {
         match *self {
             Self::Straight { normals, convex, .. } => (normals, convex),
-            Self::Rim { centre, normal, .. } => ([normal, (centre - foot).normalize()], true),
+            Self::Rim { centre, normal, hole, .. } => {
+                let beyond = if hole { centre - foot } else { foot - centre };
+                ([normal, beyond.normalize()], true)
+            }
         }
     }
 

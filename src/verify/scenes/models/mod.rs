@@ -36,6 +36,11 @@ pub fn disc(query: &Query) -> Vec<Piece> {
     vec![piece(face, Texture { colours: [[0.0; 3], [1.0; 3]], ..texture(query) })]
 }
 
+/// The rim of the disc.
+pub fn disc_edges(_: &Query) -> Vec<Edge> {
+    vec![Edge::Rim { centre: DVec3::ZERO, normal: DVec3::Y, radius: 1.0, hole: false }]
+}
+
 /// A torus.
 pub fn torus(query: &Query) -> Vec<Piece> {
     one(Torus { centre: DVec3::ZERO, major: 1.0, minor: query.number("minor") }, query)

@@ -62,7 +62,8 @@ pub fn part_edges(_: &Query) -> Vec<Edge> {
             normals: [normal(i), front],
             convex: true,
         };
-        let rim = Edge::Rim { centre: BORE.extend(sign * DEPTH), normal: front, radius: BORE_RADIUS };
+        let centre = BORE.extend(sign * DEPTH);
+        let rim = Edge::Rim { centre, normal: front, radius: BORE_RADIUS, hole: true };
         (0..count).map(side).chain([rim])
     };
     (0..count).map(upright).chain(around(1.0)).chain(around(-1.0)).collect()

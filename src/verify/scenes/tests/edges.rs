@@ -197,3 +197,20 @@ fn slabs_end_at_their_edges_and_clips_can_be_turned_off() {
     }
     assert_eq!(scenes::open("scene:torus?points=1000").unwrap().clips, None);
 }
+
+#[test]
+fn surfels_of_the_disc_end_at_its_rim() {
+    let surfels = scenes::open("scene:disc?points=2000").unwrap();
+    let mut random = Random::new(3, 0);
+    for index in 0..surfels.len() {
+        let disc = disc(&surfels, index);
+        let clip = surfels.clips.as_ref().and_then(|clips| clips.get(index));
+        let reach = disc.centre.length() + disc.radius - 1.0;
+        assert!(reach.abs() < 1e-6 || clip.is_some() == (reach > 0.0), "{:?}", disc.centre);
+        // The line is a tangent of the rim.
+        let bend = disc.radius.powi(2) / 2.0;
+        let kept = around(&disc, &mut random).into_iter().filter(|x| disc.keeps(&surfels, *x));
+        let farthest = kept.map(|x| (disc.centre + x).length()).fold(0.0, f64::max);
+        assert!(farthest <= 1.0 + bend + 4e-7, "{farthest} at {:?}", disc.centre);
+    }
+}
