@@ -33,7 +33,10 @@ PYRAMID_TO_WRITE(2, to)
 #include "lib/primitives.glsl"
 #include "lib/line.glsl"
 
-// The sample of the first strand with this point. Repeats the arithmetic of project, so that the results are equal.
+// Largest relative difference of a distance from that of project: drivers may round the same arithmetic otherwise in another pipeline.
+const float ROUNDING = 1e-6;
+
+// The sample of a segment's only strand, or of the first with this point. Repeats the arithmetic of project.
 Sample sample_of(uint i, ivec2 pixel, uint nearest) {
     Segment segment;
     segment_of(i, segment);
@@ -43,7 +46,10 @@ Sample sample_of(uint i, ivec2 pixel, uint nearest) {
         if (!strand_of(segment, k, strand) || !strand_point(segment, strand, pixel[strand.steep], point)) continue;
         ivec2 columns = columns_of(strand);
         bool in_range = pixel[strand.steep] >= columns.x && pixel[strand.steep] <= columns.y;
-        if (in_range && point.pixel == pixel && floatBitsToUint(world_distance(point.nearest)) == nearest) return sample_at(segment, strand, point);
+        float distance = uintBitsToFloat(nearest);
+        bool is_same = in_range && point.pixel == pixel && abs(world_distance(point.nearest) - distance) <= ROUNDING * distance;
+        point.pixel = pixel;
+        if (segment.strands == 1 || is_same) return sample_at(segment, strand, point);
     }
     return NO_SAMPLE;
 }
